@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The table of C functions that libkestrel_oiio.so exports as `kestrel_image_plugin`. The library
+// loads it at run time from its own folder, so that it does not depend on OpenImageIO itself.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+
+#define KESTREL_IMAGE_PLUGIN_ABI 1
+
+/// A decoded image; freed with free_image. Row 0 at the bottom, RGBA, straight alpha; 8-bit texels
+/// where the file has 8 bits a channel (as stored, no colour conversion), else linear float.
+struct KestrelPluginImage {
+  int width;
+  int height;
+  uint8_t* texels8;      // RGBA or null
+  float* texels_float;   // RGBA or null
+};
+
+/// One layer to write; channels interleaved, row 0 at the bottom.
+struct KestrelPluginLayer {
+  const char* name;      // "Combined"
+  const char* channels;  // one letter each
+  const float* pixels;
+};
+
+struct KestrelImagePlugin {
+  int abi;               // KESTREL_IMAGE_PLUGIN_ABI
+  const char* version;   // "OpenImageIO 2.4.7"
+
+  /// Both return null, or a text with the reason (valid until the next call on the thread).
+  const char* (*read_file)(const char* path, struct KestrelPluginImage* image);
+  const char* (*read_memory)(const void* data, size_t byte_count,
+                             struct KestrelPluginImage* image);
+  void (*free_image)(struct KestrelPluginImage* image);
+
+  /// .exr: all layers in one part, channels NAME.LETTER (Combined as plain R, G, B, A), half float
+  /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits. Other formats as
+  /// the plug-in can. No metadata of the machine.
+  const char* (*write_file)(const char* path, int width, int height,
+                            const struct KestrelPluginLayer* layers, size_t layer_count);
+};
+
+typedef const struct KestrelImagePlugin* (*KestrelImagePluginFunction)(void);
+
+}  // extern "C"

@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Kestrel: the C interface of libkestrel.so, the only public header.
+ *
+ * Conventions
+ * - World space is right-handed, Z up, metres. Colours are linear Rec. 709, scene-referred.
+ * - Matrices are 12 floats, column-major 3x4: the images of X, Y and Z, then the translation.
+ * - Pictures are row-major, row 0 at the bottom, float32.
+ * - Handles are reference-counted; a child keeps its parent alive. Ids are the caller's own 64-bit
+ *   names, unique per kind within a scene; 0 means none.
+ * - Arrays and strings are copied during the call.
+ * - Every function may be called from any thread. Calls on one scene are serialised; while a
+ *   renderer renders, its scene may be edited: the frame keeps the state it began with.
+ * - On failure a function returns KESTREL_ERROR_… (or NULL, 0, false) and leaves everything as it
+ *   was; kestrelGetError() has the reason and a remedy.
+ */
+#ifndef KESTREL_H
+#define KESTREL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define KESTREL_API __attribute__((visibility("default")))
+
+/* Changes whenever a struct or a function below changes incompatibly. */
+#define KESTREL_ABI_VERSION 1
+
+typedef enum KestrelError {
+  KESTREL_ERROR_NONE = 0,
+  KESTREL_ERROR_UNKNOWN = 1,
+  KESTREL_ERROR_INVALID_ARGUMENT = 2,
+  KESTREL_ERROR_INVALID_OPERATION = 3,
+  KESTREL_ERROR_OUT_OF_MEMORY = 4,
+  KESTREL_ERROR_UNSUPPORTED = 5,
+  KESTREL_ERROR_CANCELLED = 6,
+  KESTREL_ERROR_FILE = 7
+} KestrelError;
+
+typedef enum KestrelLogLevel {
+  KESTREL_LOG_DEBUG = 0,
+  KESTREL_LOG_INFO = 1,
+  KESTREL_LOG_WARNING = 2,
+  KESTREL_LOG_ERROR = 3
+} KestrelLogLevel;
+
+/* ---- Library -------------------------------------------------------------------------------- */
+
+/* "0.1.0". Never NULL. */
+KESTREL_API const char* kestrelGetVersion(void);
+
+/* KESTREL_ABI_VERSION of the library; refuse to go on when it differs from the header's. */
+KESTREL_API uint32_t kestrelGetAbiVersion(void);
+
+/* The last error on this thread, and clears it. `message` (may be NULL) receives a text that stays
+ * valid until the next call into Kestrel on this thread. */
+KESTREL_API KestrelError kestrelGetError(const char** message);
+
+/* Sends log messages to `callback` (NULL: to standard error), from any thread. The level starts
+ * from KESTREL_LOG=debug|info|warning|error. */
+typedef void (*KestrelLogCallback)(void* user, KestrelLogLevel level, const char* text);
+KESTREL_API void kestrelSetLogCallback(KestrelLogCallback callback, void* user);
+KESTREL_API void kestrelSetLogLevel(KestrelLogLevel level);
+
+/* The parameter table as a JSON array: name, scope ("scene", "object"), type, default, min, max,
+ * items, unit, paper, help. Never NULL. */
+KESTREL_API const char* kestrelGetParameterTable(void);
+
+/* ---- Device: the machine ---------------------------------------------------------------------- */
+
+typedef struct KestrelDeviceImpl* KestrelDevice;
+
+/* Never needs a display or a GPU; OpenGL is started when first used. */
+KESTREL_API KestrelDevice kestrelNewDevice(void);
+KESTREL_API void kestrelRetainDevice(KestrelDevice device);
+KESTREL_API void kestrelReleaseDevice(KestrelDevice device);
+
+/* JSON: versions of Kestrel, Embree, the image plug-in; threads; the GL device ("gl": null with
+ * "gl_error" where there is none). Starts OpenGL. The text lives as long as the device. */
+KESTREL_API const char* kestrelGetDeviceInfo(KestrelDevice device);
+
+/* ---- Scene ------------------------------------------------------------------------------------ */
+
+typedef struct KestrelSceneImpl* KestrelScene;
+
+/* Edits gather until kestrelCommitScene(), which checks the whole and makes it what renderers see.
+ * A Set call with a known id replaces that item. */
+KESTREL_API KestrelScene kestrelNewScene(KestrelDevice device);
+KESTREL_API void kestrelRetainScene(KestrelScene scene);
+KESTREL_API void kestrelReleaseScene(KestrelScene scene);
+
+typedef struct KestrelMesh {
+  const char* name;
+  size_t vertex_count;
+  const float* positions;             /* 3 per vertex, object space */
+  size_t triangle_count;
+  const uint32_t* triangles;          /* 3 vertex indices per triangle */
+  const float* corner_normals;        /* 3 per corner (9 per triangle), or NULL: flat faces */
+  const float* corner_uvs;            /* 2 per corner, or NULL: (0, 0) */
+  const float* corner_tangents;       /* 4 per corner: xyz, sign of the bitangent; or NULL: made
+                                         from the UVs where a normal map needs them */
+  const uint32_t* triangle_materials; /* object slot per triangle, or NULL: 0 */
+} KestrelMesh;
+
+/* Index out of range: error. Triangles with a vertex that is not finite, or with no area, are left
+ * out with a warning; normals that are not finite or zero become the face's. */
+KESTREL_API KestrelError kestrelSetMesh(KestrelScene scene, uint64_t id, const KestrelMesh* mesh);
+
+typedef enum KestrelExtension {
+  KESTREL_EXTENSION_REPEAT = 0,
+  KESTREL_EXTENSION_CLAMP = 1, /* the edge's texels go on */
+  KESTREL_EXTENSION_CLIP = 2   /* transparent black outside */
+} KestrelExtension;
+
+typedef struct KestrelTextureOptions {
+  const char* name;    /* for messages; may be NULL */
+  bool srgb;           /* 8-bit texels are sRGB-encoded colour */
+  bool nearest;        /* no interpolation */
+  int32_t extension;   /* KestrelExtension */
+} KestrelTextureOptions;
+
+/* An image file. It is read at the commit (many in parallel), through the image plug-in. A file
+ * that is missing or unreadable becomes magenta, with one warning. */
+KESTREL_API KestrelError kestrelSetTextureFile(KestrelScene scene, uint64_t id, const char* path,
+                                               const KestrelTextureOptions* options);
+/* The same from the bytes of an image file. */
+KESTREL_API KestrelError kestrelSetTextureMemory(KestrelScene scene, uint64_t id, const void* data,
+                                                 size_t byte_count,
+                                                 const KestrelTextureOptions* options);
+/* RGBA, straight alpha, row 0 at the bottom; 8-bit (srgb decides) or float (linear). */
+KESTREL_API KestrelError kestrelSetTexturePixels8(KestrelScene scene, uint64_t id, int width,
+                                                  int height, const uint8_t* rgba,
+                                                  const KestrelTextureOptions* options);
+KESTREL_API KestrelError kestrelSetTexturePixelsFloat(KestrelScene scene, uint64_t id, int width,
+                                                      int height, const float* rgba,
+                                                      const KestrelTextureOptions* options);
+
+typedef enum KestrelAlphaMode {
+  KESTREL_ALPHA_OPAQUE = 0, /* diffuse alpha is ignored */
+  KESTREL_ALPHA_MASK = 1,   /* below the cutoff there is no surface */
+  KESTREL_ALPHA_BLEND = 2   /* alpha is coverage */
+} KestrelAlphaMode;
+
+/* Each property is its colour times its texture (0: none). Start from kestrelDefaultMaterial(). */
+typedef struct KestrelMaterial {
+  const char* name;
+  float emission[3];
+  float ambient[3];
+  float diffuse[4];            /* A: alpha */
+  float specular[4];           /* A: 0 = exponent 1, 1 = exponent 255, linear between */
+  float optical[3];            /* reflectivity 0…1, index of refraction, opacity 0…1 */
+  float reflection_color[3];   /* tints what is reflected */
+  float transmission_color[3]; /* tints what shines through */
+  uint64_t emission_texture;
+  uint64_t ambient_texture;
+  uint64_t diffuse_texture;    /* its alpha multiplies the diffuse alpha */
+  uint64_t specular_texture;
+  uint64_t normal_texture;     /* tangent space, +Y up; load it with srgb = false */
+  uint64_t optical_texture;
+  float normal_strength;       /* 1: as painted, 0: no effect */
+  float tiling[2];             /* uv' = offset + uv * tiling */
+  float offset[2];
+  bool casts_shadow;
+  int32_t alpha_mode;          /* KestrelAlphaMode */
+  float alpha_cutoff;          /* 0…1, for KESTREL_ALPHA_MASK */
+} KestrelMaterial;
+
+/* Grey, matte, opaque: diffuse and ambient 0.8, no specular, index of refraction 1. */
+KESTREL_API void kestrelDefaultMaterial(KestrelMaterial* material);
+KESTREL_API KestrelError kestrelSetMaterial(KestrelScene scene, uint64_t id,
+                                            const KestrelMaterial* material);
+
+typedef enum KestrelLightType {
+  KESTREL_LIGHT_DIRECTIONAL = 0,
+  KESTREL_LIGHT_POINT = 1,
+  KESTREL_LIGHT_SPOT = 2
+} KestrelLightType;
+
+typedef struct KestrelLight {
+  const char* name;
+  int32_t type;          /* KestrelLightType */
+  float color[3];        /* radiance that a white Lambert surface facing the light reflects; for
+                            point and spot at 1 m */
+  float position[3];     /* point, spot */
+  float direction[3];    /* the way the light travels; directional, spot; need not be unit */
+  float attenuation[3];  /* 1 / (a + b d + c d²); {0, 0, 1} is physical */
+  float spot_angle;      /* full angle of the cone, radians, 0…π */
+  float spot_blend;      /* 0 hard edge … 1 soft all the way in */
+  float specular_factor; /* scales highlights only */
+  bool casts_shadow;
+} KestrelLight;
+
+/* White point light at the origin, physical attenuation, casting shadows. */
+KESTREL_API void kestrelDefaultLight(KestrelLight* light);
+KESTREL_API KestrelError kestrelSetLight(KestrelScene scene, uint64_t id,
+                                         const KestrelLight* light);
+
+typedef struct KestrelObject {
+  const char* name;
+  uint64_t mesh;
+  const uint64_t* materials; /* by slot; 0 entries and missing slots: the default grey */
+  size_t material_count;
+  float world_from_object[12];
+  const char* unit;          /* objects of one unit are selected together; NULL: its own name */
+} KestrelObject;
+
+KESTREL_API KestrelError kestrelSetObject(KestrelScene scene, uint64_t id,
+                                          const KestrelObject* object);
+
+/* Moves an object without sending it again. */
+KESTREL_API KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
+                                                   const float world_from_object[12]);
+
+/* A setting of the object's unit, by the table's names: relevance, cost, shadows … */
+KESTREL_API KestrelError kestrelSetObjectSetting(KestrelScene scene, uint64_t id, const char* name,
+                                                 const char* value);
+
+typedef enum KestrelKind {
+  KESTREL_KIND_MESH = 0,
+  KESTREL_KIND_TEXTURE = 1,
+  KESTREL_KIND_MATERIAL = 2,
+  KESTREL_KIND_LIGHT = 3,
+  KESTREL_KIND_OBJECT = 4
+} KestrelKind;
+
+/* Removes one item; an unknown id is an error. What still refers to it is reported at the commit. */
+KESTREL_API KestrelError kestrelRemove(KestrelScene scene, KestrelKind kind, uint64_t id);
+
+typedef enum KestrelProjection {
+  KESTREL_PERSPECTIVE = 0,
+  KESTREL_ORTHOGRAPHIC = 1
+} KestrelProjection;
+
+/* Looks along its -Z, +Y up. The window is the part of the plane z = -1 that the picture shows
+ * (perspective, ratios) or of any plane across the view (orthographic, metres). */
+typedef struct KestrelCamera {
+  int32_t projection; /* KestrelProjection */
+  float world_from_camera[12];
+  float left, right, bottom, top;
+  float near_clip, far_clip; /* metres; 0 < near < far (orthographic: near < far) */
+} KestrelCamera;
+
+KESTREL_API KestrelError kestrelSetCamera(KestrelScene scene, const KestrelCamera* camera);
+
+typedef enum KestrelWorldKind {
+  KESTREL_WORLD_COLOR = 0,
+  KESTREL_WORLD_EQUIRECTANGULAR = 1, /* textures[0]; u = 0.5 - atan2(y, x) / 2 pi,
+                                        v = 0.5 + asin(z) / pi of the direction, as in Blender */
+  KESTREL_WORLD_CUBE = 2             /* textures +X -X +Y -Y +Z -Z, with GL's face axes */
+} KestrelWorldKind;
+
+typedef struct KestrelWorld {
+  int32_t kind;            /* KestrelWorldKind */
+  float color[3];          /* radiance; factor on the textures */
+  uint64_t textures[6];
+  float map_from_world[9]; /* column-major 3x3 rotation applied to directions before the lookup */
+} KestrelWorld;
+
+KESTREL_API KestrelError kestrelSetWorld(KestrelScene scene, const KestrelWorld* world);
+
+/* A setting by its name in the table; values as text. */
+KESTREL_API KestrelError kestrelSetSetting(KestrelScene scene, const char* name,
+                                           const char* value);
+/* The value as text, or NULL. Valid until the next call on this thread. */
+KESTREL_API const char* kestrelGetSetting(KestrelScene scene, const char* name);
+
+/* Checks everything and publishes it to the scene's renderers: all or nothing. */
+KESTREL_API KestrelError kestrelCommitScene(KestrelScene scene);
+
+/* ---- Rendering --------------------------------------------------------------------------------- */
+
+typedef struct KestrelRendererImpl* KestrelRenderer;
+
+/* A renderer keeps what frames share: acceleration structures, what was selected, costs learned. */
+KESTREL_API KestrelRenderer kestrelNewRenderer(KestrelScene scene);
+KESTREL_API void kestrelRetainRenderer(KestrelRenderer renderer);
+KESTREL_API void kestrelReleaseRenderer(KestrelRenderer renderer);
+
+/* Called now and then from a rendering thread; `fraction` 0…1. Return false to cancel. */
+typedef bool (*KestrelProgressCallback)(void* user, float fraction, const char* status);
+
+/* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. */
+KESTREL_API KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
+                                       KestrelProgressCallback progress, void* user);
+
+/* Makes a running kestrelRender() return KESTREL_ERROR_CANCELLED soon. From any thread. */
+KESTREL_API void kestrelCancel(KestrelRenderer renderer);
+
+/* Passes of the last frame, in a fixed order. Channels are one letter each ("RGBA", "XYZ", "Z"). */
+KESTREL_API size_t kestrelGetPassCount(KestrelRenderer renderer);
+KESTREL_API const char* kestrelGetPassName(KestrelRenderer renderer, size_t index);
+KESTREL_API const char* kestrelGetPassChannels(KestrelRenderer renderer, const char* name);
+
+/* Copies a pass, channels interleaved: `float_count` must be width * height * channels. */
+KESTREL_API KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* pixels,
+                                         size_t float_count);
+
+/* Times, rays and what was selected in the last frame, as the JSON of one entry of "frames".
+ * Valid until the next call on this thread. NULL before the first frame. */
+KESTREL_API const char* kestrelGetStats(KestrelRenderer renderer);
+
+/* Writes passes ("Combined,Depth" or "all") to `path`: .exr linear with one layer a pass, .png the
+ * Combined pass in sRGB. Needs the image plug-in. */
+KESTREL_API KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path,
+                                           const char* passes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* KESTREL_H */

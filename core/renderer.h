@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A frame, from the scene to the film: read render_frame() first.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frame/film.h"
+#include "frame/frame.h"
+#include "gl/context.h"
+
+namespace kestrel {
+
+/// What renderers share: OpenGL (started when first used) and Embree's device.
+class Device {
+ public:
+  Device();
+  ~Device();
+
+  /// The GL context; throws Error(unsupported) where there is none (remembered).
+  std::shared_ptr<gl::Context> gl();
+  /// As kestrelGetDeviceInfo().
+  std::string info_json();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+using Progress = std::function<bool(float fraction, std::string_view status)>;
+
+class Renderer {
+ public:
+  explicit Renderer(std::shared_ptr<Device> device);
+  ~Renderer();
+
+  /// Renders one frame. Throws Error(cancelled) when `progress` returned false or cancel() was
+  /// called; the last whole frame then stays readable.
+  void render_frame(std::shared_ptr<const Scene> scene, int width, int height,
+                    const Progress& progress);
+
+  /// From any thread; only affects a frame under way.
+  void cancel();
+
+  /// The last frame.
+  const Film& film() const;
+  /// One entry of "frames" of the stats (design), as JSON; empty before the first frame.
+  const std::string& stats_json() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace kestrel

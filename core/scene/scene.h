@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The scene as every stage reads it: validated, immutable, references resolved to indices.
+// Space: world is right-handed, Z up, metres. Colours are linear Rec. 709, scene-referred.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "params/params.h"
+
+namespace kestrel {
+
+inline constexpr int kNone = -1;
+
+/// Triangles in object space. Arrays of corners hold three entries per triangle, in its order.
+struct Mesh {
+  std::string name;
+  std::vector<vec3> positions;               // per vertex
+  std::vector<uvec3> triangles;              // vertex indices
+  std::vector<vec3> corner_normals;          // unit; empty: flat faces
+  std::vector<vec2> corner_uvs;              // empty: (0, 0)
+  std::vector<vec4> corner_tangents;         // xyz unit, w = sign of the bitangent; empty: none
+  std::vector<uint32_t> triangle_materials;  // slot of the object; empty: slot 0
+  Bounds bounds;                             // object space
+};
+
+enum class Extension : uint8_t { repeat, clamp, clip };
+
+/// Texels, row 0 at the bottom (v = 0). Either 8-bit RGBA or float RGBA, never both.
+struct Texture {
+  std::string name;
+  int width = 0;
+  int height = 0;
+  bool srgb = false;  // 8-bit RGB is sRGB-encoded and decoded before filtering; alpha is linear
+  bool nearest = false;                // no interpolation
+  Extension extension = Extension::repeat;
+  std::vector<uint8_t> texels8;        // RGBA, straight alpha
+  std::vector<float> texels_float;     // RGBA, linear
+};
+
+enum class AlphaMode : uint8_t {
+  opaque,  // diffuse alpha is ignored
+  mask,    // below the cutoff there is no surface
+  blend,   // alpha is coverage: what it leaves shines straight through
+};
+
+/// The paper's Table 1: each property is a colour times a texture (texture index or kNone).
+struct Material {
+  std::string name;
+  vec3 emission{0.0f};
+  vec3 ambient{0.0f};
+  vec4 diffuse{0.8f, 0.8f, 0.8f, 1.0f};    // A: alpha (coverage)
+  vec4 specular{0.0f, 0.0f, 0.0f, 0.0f};   // A: 0 = exponent 1, 1 = exponent 255, linear between
+  vec3 optical{0.0f, 1.0f, 1.0f};          // R reflectivity, G index of refraction, B opacity
+  vec3 reflection_color{1.0f};             // tints what is reflected
+  vec3 transmission_color{1.0f};           // tints what shines through
+  int emission_texture = kNone;
+  int ambient_texture = kNone;
+  int diffuse_texture = kNone;
+  int specular_texture = kNone;
+  int normal_texture = kNone;              // tangent space, +Y up (OpenGL convention)
+  int optical_texture = kNone;
+  float normal_strength = 1.0f;
+  vec2 tiling{1.0f};                       // uv' = offset + uv * tiling (listing 2)
+  vec2 offset{0.0f};
+  bool casts_shadow = true;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+
+  bool reflective() const { return optical.x > 0.0f; }
+  bool refractive() const { return optical.z < 1.0f || alpha_mode == AlphaMode::blend; }
+  /// Whether some shadow ray may get past it or must look at its texture.
+  bool needs_any_hit() const {
+    return !casts_shadow || alpha_mode != AlphaMode::opaque || optical.z < 1.0f ||
+           optical_texture != kNone;
+  }
+};
+
+enum class LightType : uint8_t { directional, point, spot };
+
+struct Light {
+  std::string name;
+  LightType type = LightType::point;
+  vec3 color{1.0f};  // radiance that a white Lambert surface facing the light reflects, at 1 m
+                     // for point and spot, anywhere for directional
+  vec3 position{0.0f};
+  vec3 direction{0.0f, 0.0f, -1.0f};  // unit, the way the light travels
+  vec3 attenuation{0.0f, 0.0f, 1.0f};  // 1 / (x + y d + z d²), d in metres
+  float cos_outer = 0.0f;             // spot: cosine of half the cone's angle
+  float blend = 0.0f;                 // spot: 0 hard edge … 1 soft all the way
+  float specular_factor = 1.0f;
+  bool casts_shadow = true;
+};
+
+/// A mesh placed in the world.
+struct Object {
+  std::string name;
+  int mesh = kNone;
+  int unit = kNone;
+  std::vector<int> materials;  // by slot, never empty
+  mat4x3 world_from_object{1.0f};
+  bool flips_orientation = false;  // negative determinant
+};
+
+/// What the heuristic selects: an object, or all instances of one instancer.
+struct Unit {
+  std::string name;
+  ObjectSettings settings;
+  Bounds bounds;  // world space
+  bool reflective = false;
+  bool refractive = false;
+};
+
+enum class Projection : uint8_t { perspective, orthographic };
+
+/// Looks along its -Z with +Y up. The window is what the picture shows of the plane z = -1
+/// (perspective, no unit) or of any plane (orthographic, metres).
+struct Camera {
+  Projection projection = Projection::perspective;
+  mat4x3 world_from_camera{1.0f};  // rigid
+  float left = -1.0f, right = 1.0f, bottom = -1.0f, top = 1.0f;
+  float near_clip = 0.1f;  // metres
+  float far_clip = 1000.0f;
+};
+
+enum class WorldKind : uint8_t { color, equirectangular, cube };
+
+/// What lies behind everything. Directions are turned by `map_from_world` before the lookup.
+/// The formulas are in world.h.
+struct World {
+  WorldKind kind = WorldKind::color;
+  vec3 color{0.0f};      // radiance, or factor on the textures
+  int textures[6] = {kNone, kNone, kNone, kNone, kNone, kNone};  // cube: +X -X +Y -Y +Z -Z
+  mat3 map_from_world{1.0f};
+};
+
+struct Scene {
+  std::vector<std::shared_ptr<const Mesh>> meshes;  // shared with other snapshots when unchanged
+  std::vector<std::shared_ptr<const Texture>> textures;
+  std::vector<Material> materials;  // [0] is the default grey
+  std::vector<Light> lights;
+  std::vector<Object> objects;
+  std::vector<Unit> units;
+  Camera camera;
+  World world;
+  Settings settings;
+};
+
+}  // namespace kestrel
