@@ -12,7 +12,11 @@
  * - Every function may be called from any thread. Calls on one scene are serialised; while a
  *   renderer renders, its scene may be edited: the frame keeps the state it began with.
  * - On failure a function returns KESTREL_ERROR_… (or NULL, 0, false) and leaves everything as it
- *   was; kestrelGetError() has the reason and a remedy.
+ *   was; kestrelGetError() has the reason and a remedy. Success does not clear an earlier error.
+ * - A handle that is NULL, already released or of another kind is an error, never a crash.
+ *   Releasing NULL does nothing.
+ * - Numbers that are not finite are errors that name the field. What has a natural range (a
+ *   reflectivity, an opacity, an angle) is clamped to it, with a warning.
  */
 #ifndef KESTREL_H
 #define KESTREL_H
@@ -60,8 +64,9 @@ KESTREL_API uint32_t kestrelGetAbiVersion(void);
  * valid until the next call into Kestrel on this thread. */
 KESTREL_API KestrelError kestrelGetError(const char** message);
 
-/* Sends log messages to `callback` (NULL: to standard error), from any thread. The level starts
- * from KESTREL_LOG=debug|info|warning|error. */
+/* Sends log messages to `callback` (NULL: to standard error), from any thread. Once this returns,
+ * the callback set before is not running and is not called again; so it must not be called from
+ * within a log callback. The level starts from KESTREL_LOG=debug|info|warning|error. */
 typedef void (*KestrelLogCallback)(void* user, KestrelLogLevel level, const char* text);
 KESTREL_API void kestrelSetLogCallback(KestrelLogCallback callback, void* user);
 KESTREL_API void kestrelSetLogLevel(KestrelLogLevel level);
@@ -88,7 +93,8 @@ KESTREL_API const char* kestrelGetDeviceInfo(KestrelDevice device);
 typedef struct KestrelSceneImpl* KestrelScene;
 
 /* Edits gather until kestrelCommitScene(), which checks the whole and makes it what renderers see.
- * A Set call with a known id replaces that item. */
+ * A Set call with a known id replaces that item. Items keep the order in which their ids were
+ * first set; units that of their first object. */
 KESTREL_API KestrelScene kestrelNewScene(KestrelDevice device);
 KESTREL_API void kestrelRetainScene(KestrelScene scene);
 KESTREL_API void kestrelReleaseScene(KestrelScene scene);
@@ -103,10 +109,10 @@ typedef struct KestrelMesh {
   const float* corner_uvs;            /* 2 per corner, or NULL: (0, 0) */
   const float* corner_tangents;       /* 4 per corner: xyz, sign of the bitangent; or NULL: made
                                          from the UVs where a normal map needs them */
-  const uint32_t* triangle_materials; /* object slot per triangle, or NULL: 0 */
+  const uint32_t* triangle_materials; /* object slot per triangle, 0…65535, or NULL: 0 */
 } KestrelMesh;
 
-/* Index out of range: error. Triangles with a vertex that is not finite, or with no area, are left
+/* At most 2^29 vertices and as many triangles; none is fine. Index out of range: error. Triangles with a vertex that is not finite, or with no area, are left
  * out with a warning; normals that are not finite or zero become the face's. */
 KESTREL_API KestrelError kestrelSetMesh(KestrelScene scene, uint64_t id, const KestrelMesh* mesh);
 
@@ -118,20 +124,22 @@ typedef enum KestrelExtension {
 
 typedef struct KestrelTextureOptions {
   const char* name;    /* for messages; may be NULL */
-  bool srgb;           /* 8-bit texels are sRGB-encoded colour */
+  bool srgb;           /* 8-bit texels, and 16-bit ones of files, are sRGB-encoded colour */
   bool nearest;        /* no interpolation */
   int32_t extension;   /* KestrelExtension */
 } KestrelTextureOptions;
 
-/* An image file. It is read at the commit (many in parallel), through the image plug-in. A file
- * that is missing or unreadable becomes magenta, with one warning. */
+/* An image file, at most 32768 pixels a side. It is read at the first commit in which a material
+ * or the world uses it (many in parallel), through the image plug-in. A file that is missing or
+ * unreadable becomes magenta, with one warning. */
 KESTREL_API KestrelError kestrelSetTextureFile(KestrelScene scene, uint64_t id, const char* path,
                                                const KestrelTextureOptions* options);
 /* The same from the bytes of an image file. */
 KESTREL_API KestrelError kestrelSetTextureMemory(KestrelScene scene, uint64_t id, const void* data,
                                                  size_t byte_count,
                                                  const KestrelTextureOptions* options);
-/* RGBA, straight alpha, row 0 at the bottom; 8-bit (srgb decides) or float (linear). */
+/* RGBA, straight alpha, row 0 at the bottom, 1…32768 pixels a side; 8-bit (srgb decides) or float
+ * (linear). */
 KESTREL_API KestrelError kestrelSetTexturePixels8(KestrelScene scene, uint64_t id, int width,
                                                   int height, const uint8_t* rgba,
                                                   const KestrelTextureOptions* options);
@@ -208,6 +216,9 @@ typedef struct KestrelObject {
   const char* unit;          /* objects of one unit are selected together; NULL: its own name */
 } KestrelObject;
 
+/* An object whose mesh has no triangles, or whose matrix has no inverse (a scale of zero), is not
+ * rendered. Ids of mesh and materials are looked up at the commit. */
+
 KESTREL_API KestrelError kestrelSetObject(KestrelScene scene, uint64_t id,
                                           const KestrelObject* object);
 
@@ -215,7 +226,9 @@ KESTREL_API KestrelError kestrelSetObject(KestrelScene scene, uint64_t id,
 KESTREL_API KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
                                                    const float world_from_object[12]);
 
-/* A setting of the object's unit, by the table's names: relevance, cost, shadows … */
+/* A setting of the object's unit, by the table's names: relevance, cost, shadows … Of several
+ * objects of a unit the last call decides. It outlives kestrelSetObject() and goes with the object;
+ * an unknown id is an error. */
 KESTREL_API KestrelError kestrelSetObjectSetting(KestrelScene scene, uint64_t id, const char* name,
                                                  const char* value);
 
@@ -239,7 +252,7 @@ typedef enum KestrelProjection {
  * (perspective, ratios) or of any plane across the view (orthographic, metres). */
 typedef struct KestrelCamera {
   int32_t projection; /* KestrelProjection */
-  float world_from_camera[12];
+  float world_from_camera[12]; /* its scale is ignored */
   float left, right, bottom, top;
   float near_clip, far_clip; /* metres; 0 < near < far (orthographic: near < far) */
 } KestrelCamera;
@@ -256,7 +269,7 @@ typedef enum KestrelWorldKind {
 typedef struct KestrelWorld {
   int32_t kind;            /* KestrelWorldKind */
   float color[3];          /* radiance; factor on the textures */
-  uint64_t textures[6];
+  uint64_t textures[6];    /* every one that the kind reads must be given */
   float map_from_world[9]; /* column-major 3x3 rotation applied to directions before the lookup */
 } KestrelWorld;
 
@@ -268,7 +281,9 @@ KESTREL_API KestrelError kestrelSetSetting(KestrelScene scene, const char* name,
 /* The value as text, or NULL. Valid until the next call on this thread. */
 KESTREL_API const char* kestrelGetSetting(KestrelScene scene, const char* name);
 
-/* Checks everything and publishes it to the scene's renderers: all or nothing. */
+/* Checks everything and publishes it to the scene's renderers: all or nothing. Needs a camera;
+ * objects, lights and a world may be missing. What did not change is shared with the state
+ * published before, so that renderers upload and build nothing twice. */
 KESTREL_API KestrelError kestrelCommitScene(KestrelScene scene);
 
 /* ---- Rendering --------------------------------------------------------------------------------- */
@@ -283,14 +298,20 @@ KESTREL_API void kestrelReleaseRenderer(KestrelRenderer renderer);
 /* Called now and then from a rendering thread; `fraction` 0…1. Return false to cancel. */
 typedef bool (*KestrelProgressCallback)(void* user, float fraction, const char* status);
 
-/* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. */
+/* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. While it
+ * runs, another kestrelRender() of the same renderer, and reading its passes, size or statistics,
+ * fail with KESTREL_ERROR_INVALID_OPERATION (waiting could never end in a progress callback).
+ * After an error or a cancel the last whole frame stays readable. */
 KESTREL_API KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
                                        KestrelProgressCallback progress, void* user);
 
 /* Makes a running kestrelRender() return KESTREL_ERROR_CANCELLED soon. From any thread. */
 KESTREL_API void kestrelCancel(KestrelRenderer renderer);
 
-/* Passes of the last frame, in a fixed order. Channels are one letter each ("RGBA", "XYZ", "Z"). */
+/* Size in pixels of the last whole frame; an error before the first one. */
+KESTREL_API KestrelError kestrelGetFrameSize(KestrelRenderer renderer, int* width, int* height);
+
+/* Passes of every frame, in a fixed order. Channels are one letter each ("RGBA", "XYZ", "Z"). */
 KESTREL_API size_t kestrelGetPassCount(KestrelRenderer renderer);
 KESTREL_API const char* kestrelGetPassName(KestrelRenderer renderer, size_t index);
 KESTREL_API const char* kestrelGetPassChannels(KestrelRenderer renderer, const char* name);
@@ -304,7 +325,7 @@ KESTREL_API KestrelError kestrelReadPass(KestrelRenderer renderer, const char* n
 KESTREL_API const char* kestrelGetStats(KestrelRenderer renderer);
 
 /* Writes passes ("Combined,Depth" or "all") to `path`: .exr linear with one layer a pass, .png the
- * Combined pass in sRGB. Needs the image plug-in. */
+ * first of them in sRGB. The file appears whole or not at all. Needs the image plug-in. */
 KESTREL_API KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path,
                                            const char* passes);
 
