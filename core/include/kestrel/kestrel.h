@@ -75,7 +75,7 @@ KESTREL_API void kestrelSetLogLevel(KestrelLogLevel level);
  * items, unit, paper, help. Never NULL. */
 KESTREL_API const char* kestrelGetParameterTable(void);
 
-/* ---- Device: the machine ---------------------------------------------------------------------- */
+/* ---- Device: the machine --------------------------------------------------------------------- */
 
 typedef struct KestrelDeviceImpl* KestrelDevice;
 
@@ -88,7 +88,7 @@ KESTREL_API void kestrelReleaseDevice(KestrelDevice device);
  * "gl_error" where there is none). Starts OpenGL. The text lives as long as the device. */
 KESTREL_API const char* kestrelGetDeviceInfo(KestrelDevice device);
 
-/* ---- Scene ------------------------------------------------------------------------------------ */
+/* ---- Scene ----------------------------------------------------------------------------------- */
 
 typedef struct KestrelSceneImpl* KestrelScene;
 
@@ -102,7 +102,7 @@ KESTREL_API void kestrelReleaseScene(KestrelScene scene);
 typedef struct KestrelMesh {
   const char* name;
   size_t vertex_count;
-  const float* positions;             /* 3 per vertex, object space */
+  const float* positions; /* 3 per vertex, object space */
   size_t triangle_count;
   const uint32_t* triangles;          /* 3 vertex indices per triangle */
   const float* corner_normals;        /* 3 per corner (9 per triangle), or NULL: flat faces */
@@ -112,8 +112,9 @@ typedef struct KestrelMesh {
   const uint32_t* triangle_materials; /* object slot per triangle, 0…65535, or NULL: 0 */
 } KestrelMesh;
 
-/* At most 2^29 vertices and as many triangles; none is fine. Index out of range: error. Triangles with a vertex that is not finite, or with no area, are left
- * out with a warning; normals that are not finite or zero become the face's. */
+/* At most 2^29 vertices and as many triangles; none is fine. Index out of range: error. Triangles
+ * with a vertex that is not finite, or with no area, are left out with a warning; normals that are
+ * not finite or zero become the face's. */
 KESTREL_API KestrelError kestrelSetMesh(KestrelScene scene, uint64_t id, const KestrelMesh* mesh);
 
 typedef enum KestrelExtension {
@@ -123,10 +124,10 @@ typedef enum KestrelExtension {
 } KestrelExtension;
 
 typedef struct KestrelTextureOptions {
-  const char* name;    /* for messages; may be NULL */
-  bool srgb;           /* 8-bit texels, and 16-bit ones of files, are sRGB-encoded colour */
-  bool nearest;        /* no interpolation */
-  int32_t extension;   /* KestrelExtension */
+  const char* name;  /* for messages; may be NULL */
+  bool srgb;         /* 8-bit texels, and 16-bit ones of files, are sRGB-encoded colour */
+  bool nearest;      /* no interpolation */
+  int32_t extension; /* KestrelExtension */
 } KestrelTextureOptions;
 
 /* An image file, at most 32768 pixels a side. It is read at the first commit in which a material
@@ -165,16 +166,16 @@ typedef struct KestrelMaterial {
   float transmission_color[3]; /* tints what shines through */
   uint64_t emission_texture;
   uint64_t ambient_texture;
-  uint64_t diffuse_texture;    /* its alpha multiplies the diffuse alpha */
+  uint64_t diffuse_texture; /* its alpha multiplies the diffuse alpha */
   uint64_t specular_texture;
-  uint64_t normal_texture;     /* tangent space, +Y up; load it with srgb = false */
+  uint64_t normal_texture; /* tangent space, +Y up; load it with srgb = false */
   uint64_t optical_texture;
-  float normal_strength;       /* 1: as painted, 0: no effect */
-  float tiling[2];             /* uv' = offset + uv * tiling */
+  float normal_strength; /* 1: as painted, 0: no effect */
+  float tiling[2];       /* uv' = offset + uv * tiling */
   float offset[2];
   bool casts_shadow;
-  int32_t alpha_mode;          /* KestrelAlphaMode */
-  float alpha_cutoff;          /* 0…1, for KESTREL_ALPHA_MASK */
+  int32_t alpha_mode; /* KestrelAlphaMode */
+  float alpha_cutoff; /* 0…1, for KESTREL_ALPHA_MASK */
 } KestrelMaterial;
 
 /* Grey, matte, opaque: diffuse and ambient 0.8, no specular, index of refraction 1. */
@@ -213,7 +214,7 @@ typedef struct KestrelObject {
   const uint64_t* materials; /* by slot; 0 entries and missing slots: the default grey */
   size_t material_count;
   float world_from_object[12];
-  const char* unit;          /* objects of one unit are selected together; NULL: its own name */
+  const char* unit; /* objects of one unit are selected together; NULL: its own name */
 } KestrelObject;
 
 /* An object whose mesh has no triangles, or whose matrix has no inverse (a scale of zero), is not
@@ -240,7 +241,8 @@ typedef enum KestrelKind {
   KESTREL_KIND_OBJECT = 4
 } KestrelKind;
 
-/* Removes one item; an unknown id is an error. What still refers to it is reported at the commit. */
+/* Removes one item; an unknown id is an error. What still refers to it fails the next
+ * commit. */
 KESTREL_API KestrelError kestrelRemove(KestrelScene scene, KestrelKind kind, uint64_t id);
 
 typedef enum KestrelProjection {
@@ -251,7 +253,7 @@ typedef enum KestrelProjection {
 /* Looks along its -Z, +Y up. The window is the part of the plane z = -1 that the picture shows
  * (perspective, ratios) or of any plane across the view (orthographic, metres). */
 typedef struct KestrelCamera {
-  int32_t projection; /* KestrelProjection */
+  int32_t projection;          /* KestrelProjection */
   float world_from_camera[12]; /* its scale is ignored */
   float left, right, bottom, top;
   float near_clip, far_clip; /* metres; 0 < near < far (orthographic: near < far) */
@@ -276,8 +278,7 @@ typedef struct KestrelWorld {
 KESTREL_API KestrelError kestrelSetWorld(KestrelScene scene, const KestrelWorld* world);
 
 /* A setting by its name in the table; values as text. */
-KESTREL_API KestrelError kestrelSetSetting(KestrelScene scene, const char* name,
-                                           const char* value);
+KESTREL_API KestrelError kestrelSetSetting(KestrelScene scene, const char* name, const char* value);
 /* The value as text, or NULL. Valid until the next call on this thread. */
 KESTREL_API const char* kestrelGetSetting(KestrelScene scene, const char* name);
 
@@ -286,7 +287,7 @@ KESTREL_API const char* kestrelGetSetting(KestrelScene scene, const char* name);
  * published before, so that renderers upload and build nothing twice. */
 KESTREL_API KestrelError kestrelCommitScene(KestrelScene scene);
 
-/* ---- Rendering --------------------------------------------------------------------------------- */
+/* ---- Rendering ------------------------------------------------------------------------------- */
 
 typedef struct KestrelRendererImpl* KestrelRenderer;
 
