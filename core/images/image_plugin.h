@@ -11,34 +11,38 @@ extern "C" {
 #define KESTREL_IMAGE_PLUGIN_ABI 1
 
 /// A decoded image; freed with free_image. Row 0 at the bottom, RGBA, straight alpha; 8-bit texels
-/// where the file has 8 bits a channel (as stored, no colour conversion), else linear float.
+/// where the file has 8 bits a channel, else float; both as stored, without colour conversion.
 struct KestrelPluginImage {
   int width;
   int height;
-  uint8_t* texels8;      // RGBA or null
-  float* texels_float;   // RGBA or null
+  uint8_t* texels8;     // RGBA or null
+  float* texels_float;  // RGBA or null
+  int encoded;          // 1: the floats come from integers (16-bit PNG) and may be sRGB-encoded;
+                        // 0: scene-linear (EXR, HDR)
 };
+
+/// Files larger than this on a side are refused.
+#define KESTREL_IMAGE_MAX_SIDE 32768
 
 /// One layer to write; channels interleaved, row 0 at the bottom.
 struct KestrelPluginLayer {
   const char* name;      // "Combined"
   const char* channels;  // one letter each
-  const float* pixels;
+  const float* pixels;   // linear; alpha associated (premultiplied)
 };
 
 struct KestrelImagePlugin {
-  int abi;               // KESTREL_IMAGE_PLUGIN_ABI
-  const char* version;   // "OpenImageIO 2.4.7"
+  int abi;              // KESTREL_IMAGE_PLUGIN_ABI
+  const char* version;  // "OpenImageIO 2.4.7"
 
   /// Both return null, or a text with the reason (valid until the next call on the thread).
   const char* (*read_file)(const char* path, struct KestrelPluginImage* image);
-  const char* (*read_memory)(const void* data, size_t byte_count,
-                             struct KestrelPluginImage* image);
+  const char* (*read_memory)(const void* data, size_t byte_count, struct KestrelPluginImage* image);
   void (*free_image)(struct KestrelPluginImage* image);
 
   /// .exr: all layers in one part, channels NAME.LETTER (Combined as plain R, G, B, A), half float
-  /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits. Other formats as
-  /// the plug-in can. No metadata of the machine.
+  /// except Depth, Position and ids, ZIP; .png (also .jpg, .tif): the first layer, sRGB, 8 bits,
+  /// straight alpha. No metadata of the machine. The file appears whole or not at all.
   const char* (*write_file)(const char* path, int width, int height,
                             const struct KestrelPluginLayer* layers, size_t layer_count);
 };

@@ -10,12 +10,14 @@
 
 namespace kestrel::images {
 
-/// Version of the loaded plug-in, or the reason why there is none. Loads it on first use: from
-/// KESTREL_IMAGE_PLUGIN, else libkestrel_oiio.so beside the library.
+/// Version of the loaded plug-in, or the reason why there is none. It is loaded once, on first use:
+/// from the path in KESTREL_IMAGE_PLUGIN, else libkestrel_oiio.so beside the library.
 std::string plugin_version();
 bool plugin_available();
 
-/// Fills size and texels of `texture` (its name, srgb and sampling stay). Throws Error(file).
+/// Fills size and texels of `texture` (its name, srgb and sampling stay). 16-bit files become
+/// linear floats: decoded from sRGB where `texture.srgb`. Throws Error(file), or Error(unsupported)
+/// without the plug-in. Thread-safe.
 void read_file(const std::string& path, Texture& texture);
 void read_memory(const void* data, size_t byte_count, Texture& texture);
 
@@ -25,10 +27,11 @@ struct Layer {
   const float* pixels;
 };
 
-/// Writes .exr (all layers) or .png (the first layer, in sRGB). Throws Error(file).
+/// Writes .exr (all layers) or .png (the first layer, in sRGB), whole or not at all. Throws
+/// Error(file), or Error(unsupported) without the plug-in.
 void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers);
 
-/// The one stand-in for every image that cannot be had: 1x1 magenta.
+/// The one stand-in for every image that cannot be had: 1x1 magenta, opaque.
 void fill_missing(Texture& texture);
 
 }  // namespace kestrel::images
