@@ -2,16 +2,15 @@
 // A frame, from the scene to the film: read render_frame() first.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "frame/film.h"
 #include "frame/frame.h"
 #include "gl/context.h"
+#include "tracers/embree/embree_api.h"
 
 namespace kestrel {
 
@@ -23,7 +22,8 @@ class Device {
 
   /// The GL context; throws Error(unsupported) where there is none (remembered).
   std::shared_ptr<gl::Context> gl();
-  /// As kestrelGetDeviceInfo().
+  RTCDevice embree() const;
+  /// As kestrelGetDeviceInfo(). Starts OpenGL.
   std::string info_json();
 
  private:
@@ -31,6 +31,7 @@ class Device {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Told now and then how far a frame is, 0…1, from any thread; false cancels.
 using Progress = std::function<bool(float fraction, std::string_view status)>;
 
 class Renderer {
@@ -48,7 +49,7 @@ class Renderer {
 
   /// The last frame.
   const Film& film() const;
-  /// One entry of "frames" of the stats (design), as JSON; empty before the first frame.
+  /// One entry of "frames" of the stats, as JSON; empty before the first frame.
   const std::string& stats_json() const;
 
  private:

@@ -2,7 +2,6 @@
 // The finished picture: Combined and every buffer between the stages, as passes.
 #pragma once
 
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -23,29 +22,26 @@ const std::vector<PassInfo>& pass_table();
 /// those of the first sample, which lies in the pixel's centre.
 class Film {
  public:
-  Film() = default;
-  Film(int width, int height);
+  /// Takes the buffers over: the first sample's are kept, later ones are added and left as they
+  /// are. All samples have one size.
+  void add_sample(const FrameInputs& inputs, GBuffer& gbuffer, EffectBuffers& effects,
+                  std::vector<vec4>& combined);
 
-  void add_sample(const GBuffer& gbuffer, const EffectBuffers& effects,
-                  const std::vector<vec4>& combined);
-
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return gbuffer_.width; }
+  int height() const { return gbuffer_.height; }
   int samples() const { return samples_; }
 
   /// Channels interleaved. Throws Error(invalid_argument) for an unknown name.
   std::vector<float> pass(std::string_view name) const;
 
  private:
-  struct Average {  // sums of a colour over samples
-    int channels = 0;
-    std::vector<float> sum;
-  };
-  int width_ = 0;
-  int height_ = 0;
+  std::vector<float> linear_depth() const;
+
   int samples_ = 0;
-  GBuffer first_;
-  std::vector<Average> averages_;
+  Camera camera_;
+  GBuffer gbuffer_;             // colours: sums over the samples
+  EffectBuffers effects_;       // sums
+  std::vector<vec4> combined_;  // sums
 };
 
 }  // namespace kestrel

@@ -17,6 +17,7 @@ struct FrameInputs {
   int width;               // pixels
   int height;              // pixels
   vec2 subpixel{0.0f};     // sample position, offset from the pixel's centre, in pixels
+  float budget_ms = 0.0f;  // T for this sample: the frame's share; 0 means no limit
 
   size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };
@@ -26,19 +27,19 @@ struct FrameInputs {
 struct GBuffer {
   int width = 0;
   int height = 0;
-  std::vector<vec3> position;        // world space
-  std::vector<vec3> normal;          // world space, unit, after normal maps, on the mesh's own side
+  std::vector<vec3> position;  // world space
+  std::vector<vec3> normal;    // world space, unit, after normal maps, on the mesh's own side
   std::vector<vec3> normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
   std::vector<vec3> emission;
-  std::vector<vec3> ambient;         // material ambient, without the global ambient light
-  std::vector<vec4> diffuse;         // A: alpha after the material's alpha mode (1 where opaque)
-  std::vector<vec4> specular;        // A: exponent, 0 … 1 for 1 … 255
-  std::vector<vec3> optical;         // R reflectivity, G index of refraction, B opacity incl. alpha
+  std::vector<vec3> ambient;   // material ambient, without the global ambient light
+  std::vector<vec4> diffuse;   // A: alpha after the material's alpha mode (1 where opaque)
+  std::vector<vec4> specular;  // A: exponent, 0 … 1 for 1 … 255
+  std::vector<vec3> optical;   // R reflectivity, G index of refraction, B opacity incl. alpha
   std::vector<float> heuristic_mask;  // stage 2: 1 selected, 0 not
-  std::vector<float> depth;          // reversed z: 1 at the near plane, 0 at the far one and beyond
-  std::vector<uint32_t> object;      // scene object index + 1, 0 = nothing
-  std::vector<uint32_t> material;    // scene material index (0 also where nothing)
-  std::vector<vec3> lighting;        // P-buffer: L, lit without shadows, reflections, refractions
+  std::vector<float> depth;        // reversed z: 1 at the near plane, 0 at the far one and beyond
+  std::vector<uint32_t> object;    // scene object index + 1, 0 = nothing
+  std::vector<uint32_t> material;  // scene material index (0 also where nothing)
+  std::vector<vec3> lighting;      // P-buffer: L, lit without shadows, reflections, refractions
 
   void resize(int new_width, int new_height);
 };
@@ -48,15 +49,15 @@ enum EffectBits : uint8_t { kShadows = 1, kReflections = 2, kRefractions = 4 };
 
 /// Every factor of the paper's Table 3 for one unit in one frame.
 struct UnitSelection {
-  uint64_t area = 0;         // A: visible pixels
-  float centrality = 0.0f;   // P: 0.01 … 1, 1 in the middle of the view
-  float distance = 0.0f;     // D: camera to the box's centre, metres
-  float visibility = 0.0f;   // V = A P / D                        (eq. 1)
-  float rays = 0.0f;         // Q: rays per pixel
+  uint64_t area = 0;            // A: visible pixels
+  float centrality = 0.0f;      // P: 0.01 … 1, 1 in the middle of the view
+  float distance = 0.0f;        // D: camera to the box's centre, metres
+  float visibility = 0.0f;      // V = A P / D                        (eq. 1)
+  float rays = 0.0f;            // Q: rays per pixel
   float estimated_cost = 0.0f;  // E, learned where the setting is 0
-  float cost = 0.0f;         // C = A Q E, in milliseconds         (eq. 2)
-  float relevance = 0.0f;    // R = (S I + V) K                    (eq. 3)
-  bool was_selected = false;  // S
+  float cost = 0.0f;            // C = A Q E, in milliseconds         (eq. 2)
+  float relevance = 0.0f;       // R = (S I + V) K                    (eq. 3)
+  bool was_selected = false;    // S
   bool selected = false;
   uint8_t effects = 0;       // EffectBits traced this frame
   double ms = 0.0;           // measured after stage 3: this unit's share of the trace time
@@ -90,16 +91,8 @@ struct EffectBuffers {
   std::vector<vec3> reflection;  // M, already tinted by the material's reflection colour
   std::vector<vec3> refraction;  // R, already tinted by the material's transmission colour
   RayCounts rays;
-  double trace_calls_ms = 0.0;               // thread time inside Embree calls
-  std::vector<uint64_t> rays_by_unit;        // parallel to Scene::units
-};
-
-/// Wall times of one frame, milliseconds.
-struct StageTimes {
-  double raster = 0.0;
-  double heuristic = 0.0;
-  double trace = 0.0;
-  double blend = 0.0;
+  double trace_calls_ms = 0.0;         // thread time inside Embree calls
+  std::vector<uint64_t> rays_by_unit;  // parallel to Scene::units
 };
 
 }  // namespace kestrel

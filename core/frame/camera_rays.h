@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From pixels to rays and depths, for whoever does not rasterise.
+#pragma once
+
+#include "frame/frame.h"
+
+namespace kestrel {
+
+/// A ray with the part of it that the clip planes leave.
+struct CameraRay {
+  vec3 origin;
+  vec3 direction;  // unit
+  float t_near;
+  float t_far;
+};
+
+/// The camera's frame in world space, once per frame.
+class CameraRays {
+ public:
+  explicit CameraRays(const FrameInputs& inputs)
+      : camera_(inputs.scene.camera),
+        right_(camera_.world_from_camera[0]),
+        up_(camera_.world_from_camera[1]),
+        backward_(camera_.world_from_camera[2]),
+        position_(camera_.world_from_camera[3]),
+        scale_((camera_.right - camera_.left) / static_cast<float>(inputs.width),
+               (camera_.top - camera_.bottom) / static_cast<float>(inputs.height)),
+        first_(camera_.left + (0.5f + inputs.subpixel.x) * scale_.x,
+               camera_.bottom + (0.5f + inputs.subpixel.y) * scale_.y) {}
+
+  /// The ray through the frame's sample position of pixel (x, y), row 0 at the bottom.
+  CameraRay ray(int x, int y) const {
+    const vec2 at = first_ + vec2(x, y) * scale_;
+    if (camera_.projection == Projection::orthographic) {
+      const vec3 origin = position_ + at.x * right_ + at.y * up_;
+      return {origin, -backward_, camera_.near_clip, camera_.far_clip};
+    }
+    const vec3 along = at.x * right_ + at.y * up_ - backward_;
+    const float length = glm::length(along);
+    return {position_, along / length, camera_.near_clip * length, camera_.far_clip * length};
+  }
+
+  /// Unit direction from a point towards the viewer.
+  vec3 to_viewer(const vec3& position_ws) const {
+    return camera_.projection == Projection::orthographic ? backward_
+                                                          : glm::normalize(position_ - position_ws);
+  }
+
+  float distance(const vec3& position_ws) const { return glm::length(position_ws - position_); }
+
+  /// Reversed-z depth of a point: 1 at the near plane, 0 at the far one.
+  float reversed_depth(const vec3& position_ws) const {
+    const float d = glm::dot(position_ - position_ws, backward_);
+    const float n = camera_.near_clip, f = camera_.far_clip;
+    return camera_.projection == Projection::orthographic ? (f - d) / (f - n)
+                                                          : n * (f - d) / (d * (f - n));
+  }
+
+ private:
+  const Camera& camera_;
+  vec3 right_, up_, backward_, position_;
+  vec2 scale_;
+  vec2 first_;
+};
+
+}  // namespace kestrel

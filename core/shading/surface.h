@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A point on a surface with its material evaluated: what shading needs, wherever it came from.
+#pragma once
+
+#include "scene/scene.h"
+
+namespace kestrel {
+
+struct Surface {
+  vec3 position;          // world space
+  vec3 normal;            // world space, unit, after normal maps, on the mesh's own side
+  vec3 normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
+  vec3 emission;
+  vec3 ambient;
+  vec4 diffuse;   // A: alpha after the alpha mode
+  vec4 specular;  // A: exponent, 0 … 1 for 1 … 255
+  vec3 optical;   // R reflectivity, G index of refraction, B opacity incl. alpha
+  vec3 reflection_color;
+  vec3 transmission_color;
+};
+
+/// Where a ray met a mesh.
+struct SurfaceHit {
+  int object;         // index in Scene::objects
+  uint32_t triangle;  // index in its mesh
+  vec2 barycentric;   // weights of the second and third corner
+};
+
+/// The material's slot at a triangle.
+inline int material_of(const Scene& scene, const Object& object, uint32_t triangle) {
+  const Mesh& mesh = *scene.meshes[object.mesh];
+  const uint32_t slot = mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
+  return object.materials[glm::min<size_t>(slot, object.materials.size() - 1)];
+}
+
+/// Interpolates and evaluates the material. `normal_from_object` is the inverse transpose of the
+/// object's matrix. Tangent space is listing 2's, with an orthogonal tangent.
+Surface evaluate_surface(const Scene& scene, const SurfaceHit& hit, const mat3& normal_from_object);
+
+/// Diffuse alpha at a hit, before the alpha mode: colour times texture.
+float evaluate_alpha(const Scene& scene, const Object& object, const SurfaceHit& hit);
+
+/// Light that gets past a surface on its way to another (listing 8b): what alpha leaves uncovered,
+/// and of the rest transparency * (1 - diffuse), tinted.
+vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit);
+
+}  // namespace kestrel

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shading/texture.h"
+
+#include <array>
+#include <cmath>
+
+#include "scene/world.h"
+
+namespace kestrel {
+namespace {
+
+constexpr float kFromByte = 1.0f / 255.0f;
+
+/// IEC 61966-2-1, by 8-bit code.
+const std::array<float, 256>& srgb_to_linear() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (int i = 0; i < 256; ++i) {
+      const double c = i / 255.0;
+      t[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    return t;
+  }();
+  return table;
+}
+
+int wrap(int i, int n, Extension extension) {
+  if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
+  if (extension == Extension::repeat) {
+    i %= n;
+    return i < 0 ? i + n : i;
+  }
+  if (extension == Extension::clamp) return i < 0 ? 0 : n - 1;
+  return kNone;
+}
+
+vec4 texel(const Texture& t, int x, int y) {
+  x = wrap(x, t.width, t.extension);
+  y = wrap(y, t.height, t.extension);
+  if (x < 0 || y < 0) return vec4(0.0f);
+  const size_t i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(t.width) + x);
+  if (!t.texels_float.empty()) {
+    const float* p = &t.texels_float[i];
+    return {p[0], p[1], p[2], p[3]};
+  }
+  const uint8_t* p = &t.texels8[i];
+  if (!t.srgb) return vec4(p[0], p[1], p[2], p[3]) * kFromByte;
+  static const std::array<float, 256>& linear = srgb_to_linear();
+  return {linear[p[0]], linear[p[1]], linear[p[2]], p[3] * kFromByte};
+}
+
+/// Texel coordinate of a texture coordinate, kept where an int can hold it.
+float texel_coordinate(float u, int size, Extension extension) {
+  if (extension == Extension::repeat) u -= std::floor(u);
+  return glm::clamp(u * static_cast<float>(size), -1e6f, 1e6f);
+}
+
+}  // namespace
+
+vec4 sample_texture(const Texture& t, const vec2& uv) {
+  if (t.width <= 0 || t.height <= 0) return vec4(1.0f);
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return texel(t, 0, 0);
+  const float x = texel_coordinate(uv.x, t.width, t.extension);
+  const float y = texel_coordinate(uv.y, t.height, t.extension);
+  if (t.nearest) {
+    return texel(t, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+  }
+  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
+  const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
+  const float ax = x - 0.5f - fx, ay = y - 0.5f - fy;
+  const vec4 low = glm::mix(texel(t, ix, iy), texel(t, ix + 1, iy), ax);
+  const vec4 high = glm::mix(texel(t, ix, iy + 1), texel(t, ix + 1, iy + 1), ax);
+  return glm::mix(low, high, ay);
+}
+
+vec3 sample_world(const Scene& scene, const vec3& direction_ws) {
+  const World& world = scene.world;
+  if (world.kind == WorldKind::color) return world.color;
+  const vec3 d = world.map_from_world * direction_ws;
+  const CubeUv at = world.kind == WorldKind::cube ? cube_uv(d) : CubeUv{0, equirectangular_uv(d)};
+  const int texture = world.textures[at.face];
+  if (texture == kNone) return world.color;
+  return world.color * vec3(sample_texture(*scene.textures[texture], at.uv));
+}
+
+}  // namespace kestrel

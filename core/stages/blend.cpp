@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/blend.h"
+
+#include <tbb/parallel_for.h>
+
+namespace kestrel {
+
+vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflection,
+                 const vec3& refraction, float reflectivity, float transparency) {
+  const vec3 surface = glm::max(lighting - (1.0f - shadow), vec3(0.0f));
+  const BlendWeights w = blend_weights(reflectivity, transparency);
+  return w.surface * surface + w.reflection * reflection + w.refraction * refraction;
+}
+
+void BlendStage::run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
+                     const EffectBuffers& effects, std::vector<vec4>& combined) {
+  combined.resize(inputs.pixels());
+  const size_t width = static_cast<size_t>(inputs.width);
+  tbb::parallel_for(0, inputs.height, [&](int y) {
+    for (size_t i = y * width; i < (y + 1) * width; ++i) {
+      const uint32_t object = gbuffer.object[i];
+      const uint8_t traced =
+          object == 0 ? 0 : selection.units[inputs.scene.objects[object - 1].unit].effects;
+      const float reflectivity = traced & kReflections ? gbuffer.optical[i].x : 0.0f;
+      const float transparency = traced & kRefractions ? 1.0f - gbuffer.optical[i].z : 0.0f;
+      combined[i] = vec4(blend_pixel(gbuffer.lighting[i], effects.shadow[i], effects.reflection[i],
+                                     effects.refraction[i], reflectivity, transparency),
+                         1.0f);
+    }
+  });
+}
+
+}  // namespace kestrel

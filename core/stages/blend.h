@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stage 4: lighting and effects become the picture (paper, section 3.4, equations 4 to 6).
+#pragma once
+
+#include <vector>
+
+#include "frame/frame.h"
+
+namespace kestrel {
+
+/// One pixel: lighting L, shadow S, reflection M, refraction R, and the optical properties.
+///   C   = L - (1 - S)                                                  (eq. 4)
+///   C_M = O_M M + (1 - O_M) (O_R R + (1 - O_R) C)                      (eq. 5)
+///   C_R = O_R R + (1 - O_R) (O_M M + (1 - O_M) C)                      (eq. 6)
+/// and their average. C is kept from falling below 0, where L was rounded.
+vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflection,
+                 const vec3& refraction, float reflectivity, float transparency);
+
+/// What the average of equations 5 and 6 weighs each part with; they add up to 1.
+struct BlendWeights {
+  float surface;     // (1 - O_M) (1 - O_R)
+  float reflection;  // O_M (1 - O_R / 2)
+  float refraction;  // O_R (1 - O_M / 2)
+};
+
+inline BlendWeights blend_weights(float reflectivity, float transparency) {
+  return {(1.0f - reflectivity) * (1.0f - transparency),
+          reflectivity * (1.0f - 0.5f * transparency), transparency * (1.0f - 0.5f * reflectivity)};
+}
+
+class BlendStage {
+ public:
+  /// Combined: linear RGB and alpha 1. Effects that were not traced leave the lighting as it is:
+  /// an untraced reflection or refraction counts as lighting in its place.
+  void run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
+           const EffectBuffers& effects, std::vector<vec4>& combined);
+};
+
+}  // namespace kestrel

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything in which Embree 3.13 and 4 differ. A query carries a pointer to the caller's state to
+// the filter functions.
+#pragma once
+
+#if KESTREL_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace kestrel::embree {
+
+#if KESTREL_EMBREE_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+#else
+using QueryContext = RTCIntersectContext;
+#endif
+
+/// One traversal's context. Derive from it to give filter functions more; `context` comes first so
+/// that a filter can cast back.
+struct Query {
+  QueryContext context;
+  bool coherent;
+
+  explicit Query(bool is_coherent) : coherent(is_coherent) {
+#if KESTREL_EMBREE_MAJOR >= 4
+    rtcInitRayQueryContext(&context);
+#else
+    rtcInitIntersectContext(&context);
+    context.flags =
+        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+#endif
+  }
+};
+
+#if KESTREL_EMBREE_MAJOR >= 4
+
+inline RTCIntersectArguments intersect_arguments(Query& query) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = query.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &query.context;
+  return arguments;
+}
+
+inline RTCOccludedArguments occluded_arguments(Query& query) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = query.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.context = &query.context;
+  return arguments;
+}
+
+inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
+  RTCIntersectArguments arguments = intersect_arguments(query);
+  rtcIntersect1(scene, &ray, &arguments);
+}
+inline void intersect8(RTCScene scene, Query& query, const int* valid, RTCRayHit8& rays) {
+  RTCIntersectArguments arguments = intersect_arguments(query);
+  rtcIntersect8(valid, scene, &rays, &arguments);
+}
+inline void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
+  RTCOccludedArguments arguments = occluded_arguments(query);
+  rtcOccluded1(scene, &ray, &arguments);
+}
+inline void occluded8(RTCScene scene, Query& query, const int* valid, RTCRay8& rays) {
+  RTCOccludedArguments arguments = occluded_arguments(query);
+  rtcOccluded8(valid, scene, &rays, &arguments);
+}
+
+#else
+
+inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
+  rtcIntersect1(scene, &query.context, &ray);
+}
+inline void intersect8(RTCScene scene, Query& query, const int* valid, RTCRayHit8& rays) {
+  rtcIntersect8(valid, scene, &query.context, &rays);
+}
+inline void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
+  rtcOccluded1(scene, &query.context, &ray);
+}
+inline void occluded8(RTCScene scene, Query& query, const int* valid, RTCRay8& rays) {
+  rtcOccluded8(valid, scene, &query.context, &rays);
+}
+
+#endif
+
+}  // namespace kestrel::embree

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracers/embree/primary_rays.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include "frame/camera_rays.h"
+#include "shading/shading.h"
+#include "shading/texture.h"
+
+namespace kestrel {
+namespace {
+
+/// Pixels of one packet: 4 wide, 2 high.
+constexpr int kPacketWidth = 4;
+constexpr int kPacketHeight = 2;
+constexpr int kTile = 32;
+
+void store_miss(const Scene& scene, const CameraRay& ray, size_t i, GBuffer& out) {
+  out.position[i] = out.normal[i] = out.normal_geometric[i] = vec3(0.0f);
+  out.emission[i] = out.ambient[i] = out.optical[i] = vec3(0.0f);
+  out.diffuse[i] = out.specular[i] = vec4(0.0f);
+  out.depth[i] = 0.0f;
+  out.object[i] = out.material[i] = 0;
+  out.lighting[i] = sample_world(scene, ray.direction);
+}
+
+void store_hit(const RtScene& rt, const CameraRays& camera, const SurfaceHit& hit, size_t i,
+               GBuffer& out) {
+  const Scene& scene = rt.scene();
+  Surface s = evaluate_surface(scene, hit, rt.normal_from_object(hit.object));
+  out.position[i] = s.position;
+  out.normal[i] = s.normal;
+  out.normal_geometric[i] = s.normal_geometric;
+  out.emission[i] = s.emission;
+  out.ambient[i] = s.ambient;
+  out.diffuse[i] = s.diffuse;
+  out.specular[i] = s.specular;
+  out.optical[i] = s.optical;
+  out.depth[i] = camera.reversed_depth(s.position);
+  out.object[i] = static_cast<uint32_t>(hit.object) + 1;
+  out.material[i] =
+      static_cast<uint32_t>(material_of(scene, scene.objects[hit.object], hit.triangle));
+  const vec3 to_viewer = camera.to_viewer(s.position);
+  face_viewer(s, to_viewer);
+  out.lighting[i] = lighting_without_shadows(scene, s, to_viewer);
+}
+
+void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, GBuffer& out) {
+  alignas(32) int valid[8];
+  alignas(32) RTCRayHit8 packet;
+  CameraRay rays[8];
+  for (int lane = 0; lane < 8; ++lane) {
+    const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
+    valid[lane] = x < out.width && y < out.height ? -1 : 0;
+    const CameraRay& r = rays[lane] = camera.ray(x, y);
+    packet.ray.org_x[lane] = r.origin.x;
+    packet.ray.org_y[lane] = r.origin.y;
+    packet.ray.org_z[lane] = r.origin.z;
+    packet.ray.dir_x[lane] = r.direction.x;
+    packet.ray.dir_y[lane] = r.direction.y;
+    packet.ray.dir_z[lane] = r.direction.z;
+    packet.ray.tnear[lane] = r.t_near;
+    packet.ray.tfar[lane] = r.t_far;
+    packet.ray.time[lane] = 0.0f;
+    packet.ray.mask[lane] = ~0u;
+    packet.ray.id[lane] = static_cast<unsigned>(lane);
+    packet.ray.flags[lane] = 0;
+    packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  embree::Query query(true);
+  embree::intersect8(rt.handle(), query, valid, packet);
+  for (int lane = 0; lane < 8; ++lane) {
+    if (valid[lane] == 0) continue;
+    const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
+    const size_t i = static_cast<size_t>(y) * static_cast<size_t>(out.width) + x;
+    if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
+      store_miss(rt.scene(), rays[lane], i, out);
+    } else {
+      store_hit(rt, camera,
+                {static_cast<int>(packet.hit.instID[0][lane]), packet.hit.primID[lane],
+                 vec2(packet.hit.u[lane], packet.hit.v[lane])},
+                i, out);
+    }
+  }
+}
+
+}  // namespace
+
+uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
+  out.resize(inputs.width, inputs.height);
+  const CameraRays camera(inputs);
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, inputs.height, kTile, 0, inputs.width, kTile),
+                    [&](const tbb::blocked_range2d<int>& tile) {
+                      // Packets start at multiples of their size however the range was split.
+                      const auto first = [](int begin, int size) {
+                        return (begin + size - 1) / size * size;
+                      };
+                      for (int y = first(tile.rows().begin(), kPacketHeight); y < tile.rows().end();
+                           y += kPacketHeight) {
+                        for (int x = first(tile.cols().begin(), kPacketWidth);
+                             x < tile.cols().end(); x += kPacketWidth) {
+                          trace_packet(scene_, camera, x, y, out);
+                        }
+                      }
+                    });
+  return inputs.pixels();
+}
+
+}  // namespace kestrel

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Shadow rays, gathered and traced in packets of eight.
+#pragma once
+
+#include <vector>
+
+#include "scene/rt_scene.h"
+
+namespace kestrel {
+
+class ShadowQueue {
+ public:
+  /// One ray: the light it stands for and where that light goes.
+  struct Task {
+    vec3 light;       // what arrives if nothing is in between
+    uint32_t target;  // the caller's index
+  };
+
+  /// From `origin` to `distance` along `direction`; all in world space, metres.
+  void push(const vec3& origin, const vec3& direction, float distance, const Task& task);
+
+  size_t size() const { return tasks_.size(); }
+
+  /// Traces all, calls `receive(task, transmitted)` in the order of the pushes, and empties the
+  /// queue. `transmitted` is the share of light left, per colour. Returns milliseconds in Embree.
+  template <typename Receive>
+  double resolve(const RtScene& scene, bool coherent, Receive&& receive) {
+    const double ms = trace(scene, coherent);
+    for (size_t i = 0; i < tasks_.size(); ++i) {
+      const bool blocked = packets_[i / 8].tfar[i % 8] < 0.0f;
+      receive(tasks_[i], blocked ? vec3(0.0f) : transmitted_[i]);
+    }
+    packets_.clear();
+    tasks_.clear();
+    return ms;
+  }
+
+ private:
+  double trace(const RtScene& scene, bool coherent);
+
+  std::vector<RTCRay8> packets_;
+  std::vector<Task> tasks_;
+  std::vector<vec3> transmitted_;
+};
+
+}  // namespace kestrel

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tracers/embree/tile_tracer.h"
+
+#include <chrono>
+#include <utility>
+
+#include "shading/optics.h"
+#include "shading/shading.h"
+#include "shading/texture.h"
+#include "stages/blend.h"
+
+namespace kestrel {
+namespace {
+
+/// Start of a ray that leaves a surface to the side of `normal`: far enough off it for float32
+/// positions, `travelled` being the distance over which the position was computed, in metres.
+vec3 leave_surface(const vec3& position, const vec3& normal, float travelled) {
+  const float magnitude = max_component(glm::abs(position)) + travelled;
+  return position + normal * (1.6e-5f * magnitude);
+}
+
+RTCRayHit ray_hit(const vec3& origin, const vec3& direction) {
+  RTCRayHit r;
+  r.ray.org_x = origin.x;
+  r.ray.org_y = origin.y;
+  r.ray.org_z = origin.z;
+  r.ray.dir_x = direction.x;
+  r.ray.dir_y = direction.y;
+  r.ray.dir_z = direction.z;
+  r.ray.tnear = 0.0f;
+  r.ray.tfar = INFINITY;
+  r.ray.time = 0.0f;
+  r.ray.mask = ~0u;
+  r.ray.id = 0;
+  r.ray.flags = 0;
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  return r;
+}
+
+}  // namespace
+
+TileTracer::TileTracer(const TraceRequest& request, const RtScene& scene, EffectBuffers& effects)
+    : request_(request),
+      rt_(scene),
+      scene_(scene.scene()),
+      effects_(effects),
+      camera_(request.inputs),
+      rays_by_unit_(scene_.units.size(), 0) {}
+
+void TileTracer::count(uint32_t unit, uint64_t& kind) {
+  ++kind;
+  ++rays_by_unit_[unit];
+}
+
+uint32_t TileTracer::unit_of(uint32_t pixel) const {
+  return static_cast<uint32_t>(scene_.objects[request_.gbuffer.object[pixel] - 1].unit);
+}
+
+void TileTracer::trace(int x0, int y0) {
+  gather_pixels(x0, y0);
+  if (pixels_.empty()) return;
+  trace_primary_shadows();
+  start_paths();
+  while (!paths_.empty()) trace_depth();
+}
+
+void TileTracer::gather_pixels(int x0, int y0) {
+  pixels_.clear();
+  const GBuffer& g = request_.gbuffer;
+  const int x1 = std::min(x0 + kSize, g.width), y1 = std::min(y0 + kSize, g.height);
+  const int stride = request_.pixel_stride;
+  for (int y = y0; y < y1; ++y) {
+    if (y % stride != 0) continue;
+    for (int x = x0; x < x1; ++x) {
+      if (x % stride != 0) continue;
+      const uint32_t i = static_cast<uint32_t>(y) * static_cast<uint32_t>(g.width) + x;
+      if (g.object[i] == 0) continue;
+      const uint32_t unit = unit_of(i);
+      const uint8_t effects = request_.selection.units[unit].effects;
+      if (effects == 0) continue;
+      const Material& material = scene_.materials[g.material[i]];
+      Pixel p{i, unit, {}, camera_.to_viewer(g.position[i])};
+      p.surface = {g.position[i],
+                   g.normal[i],
+                   g.normal_geometric[i],
+                   g.emission[i],
+                   g.ambient[i],
+                   g.diffuse[i],
+                   g.specular[i],
+                   g.optical[i],
+                   material.reflection_color,
+                   material.transmission_color};
+      p.entering = glm::dot(p.surface.normal_geometric, p.to_viewer) >= 0.0f;
+      face_viewer(p.surface, p.to_viewer);
+      p.reflectivity = effects & kReflections ? p.surface.optical.x : 0.0f;
+      p.transparency = effects & kRefractions ? 1.0f - p.surface.optical.z : 0.0f;
+      p.needs_lighting =
+          (effects & kShadows) && blend_weights(p.reflectivity, p.transparency).surface > 0.0f;
+      pixels_.push_back(p);
+    }
+  }
+}
+
+void TileTracer::trace_primary_shadows() {
+  Incident incident;
+  for (const Light& light : scene_.lights) {
+    if (!light.casts_shadow) continue;
+    for (const Pixel& p : pixels_) {
+      if (!p.needs_lighting) continue;
+      const Surface& s = p.surface;
+      if (!incident_light(light, s.position, incident)) continue;
+      const vec3 light_color = reflect_light(scene_.settings, s, p.to_viewer, light, incident);
+      if (max_component(light_color) <= 0.0f) continue;
+      const vec3 origin =
+          leave_surface(s.position, s.normal_geometric, camera_.distance(s.position));
+      shadows_.push(origin, incident.direction, incident.distance, {light_color, p.index});
+      count(p.unit, rays_.shadow);
+    }
+    trace_calls_ms_ +=
+        shadows_.resolve(rt_, true, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
+          effects_.shadow[task.target] -= task.light * (1.0f - transmitted);
+        });
+  }
+}
+
+void TileTracer::start_paths() {
+  for (const Pixel& p : pixels_) {
+    const Path eye{{}, -p.to_viewer, vec3(1.0f), 1.0f, p.index, 0, false};
+    spawn(eye, p.surface, p.entering, camera_.distance(p.surface.position), 1.0f, 1.0f,
+          p.reflectivity, p.transparency);
+  }
+  std::swap(paths_, next_paths_);
+}
+
+void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, float distance,
+                       float weight_reflection, float weight_refraction, float reflectivity,
+                       float transparency) {
+  const auto emit = [&](const vec3& direction, const vec3& tint, float importance, bool reflected) {
+    const float side = glm::dot(direction, facing.normal_geometric) < 0.0f ? -1.0f : 1.0f;
+    next_paths_.push_back({leave_surface(facing.position, side * facing.normal_geometric, distance),
+                           direction, from.throughput * tint, importance, from.pixel,
+                           static_cast<uint8_t>(from.depth + 1),
+                           from.depth == 0 ? reflected : from.reflected});
+    count(unit_of(from.pixel), reflected ? rays_.reflection : rays_.refraction);
+  };
+  const float cutoff = scene_.settings.importance_cutoff;
+  const float reflection_importance = from.importance * reflectivity;
+  if (reflectivity > 0.0f && reflection_importance > cutoff) {
+    emit(reflect_outward(from.direction, facing.normal, facing.normal_geometric),
+         weight_reflection * facing.reflection_color, reflection_importance, true);
+  }
+  const float refraction_importance = from.importance * transparency;
+  if (transparency > 0.0f && refraction_importance > cutoff) {
+    const float outside = scene_.settings.environment_ior, inside = facing.optical.y;
+    const float eta = entering ? outside / inside : inside / outside;
+    emit(refract_or_reflect(from.direction, facing.normal, eta),
+         weight_refraction * facing.transmission_color, refraction_importance, false);
+  }
+}
+
+void TileTracer::trace_depth() {
+  hits_.clear();
+  for (const Path& path : paths_) hits_.push_back(ray_hit(path.origin, path.direction));
+  const auto begin = std::chrono::steady_clock::now();
+  embree::Query query(false);
+  for (RTCRayHit& ray : hits_) embree::intersect1(rt_.handle(), query, ray);
+  trace_calls_ms_ +=
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+
+  next_paths_.clear();
+  for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i]);
+  trace_calls_ms_ +=
+      shadows_.resolve(rt_, false, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
+        const bool reflected = task.target & 1u;
+        (reflected ? effects_.reflection : effects_.refraction)[task.target >> 1] +=
+            task.light * transmitted;
+      });
+  std::swap(paths_, next_paths_);
+}
+
+void TileTracer::shade_hit(const Path& path, const RTCRayHit& ray) {
+  vec3& sum = (path.reflected ? effects_.reflection : effects_.refraction)[path.pixel];
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    sum += path.throughput * sample_world(scene_, path.direction);
+    return;
+  }
+  const int object = static_cast<int>(ray.hit.instID[0]);
+  Surface s = evaluate_surface(scene_, {object, ray.hit.primID, vec2(ray.hit.u, ray.hit.v)},
+                               rt_.normal_from_object(object));
+  const bool entering = glm::dot(s.normal_geometric, path.direction) < 0.0f;
+  const vec3 to_viewer = -path.direction;
+  face_viewer(s, to_viewer);
+
+  const float reflectivity = s.optical.x, transparency = 1.0f - s.optical.z;
+  BlendWeights w = blend_weights(reflectivity, transparency);
+  if (path.depth >= scene_.settings.max_depth) {
+    w = {1.0f, 0.0f, 0.0f};  // listing 8c: lighting stands in for what is not followed
+  } else {
+    spawn(path, s, entering, ray.ray.tfar, w.reflection, w.refraction, reflectivity, transparency);
+  }
+  if (w.surface > 0.0f) {
+    sum += path.throughput * w.surface * unlit(scene_.settings, s);
+    add_lighting(path, s, to_viewer, path.throughput * w.surface, ray.ray.tfar);
+  }
+}
+
+void TileTracer::add_lighting(const Path& path, const Surface& facing, const vec3& to_viewer,
+                              const vec3& weight, float distance) {
+  Incident incident;
+  const uint32_t target = path.pixel << 1 | (path.reflected ? 1u : 0u);
+  const vec3 origin = leave_surface(facing.position, facing.normal_geometric, distance);
+  for (const Light& light : scene_.lights) {
+    if (!incident_light(light, facing.position, incident)) continue;
+    const vec3 light_color =
+        weight * reflect_light(scene_.settings, facing, to_viewer, light, incident);
+    if (max_component(light_color) <= 0.0f) continue;
+    if (!light.casts_shadow) {
+      (path.reflected ? effects_.reflection : effects_.refraction)[path.pixel] += light_color;
+      continue;
+    }
+    shadows_.push(origin, incident.direction, incident.distance, {light_color, target});
+    count(unit_of(path.pixel), rays_.shadow);
+  }
+}
+
+}  // namespace kestrel

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whitted ray tracing of one tile, breadth first: all shadow rays of a light, then all reflections
+// and refractions of a depth, so that rays reach Embree in batches. Because equations 5 and 6 are
+// linear, every ray carries its share of the pixel and nothing has to be put together afterwards.
+#pragma once
+
+#include <vector>
+
+#include "frame/camera_rays.h"
+#include "shading/surface.h"
+#include "tracers/embree/shadow_queue.h"
+#include "tracers/tracer.h"
+
+namespace kestrel {
+
+class TileTracer {
+ public:
+  static constexpr int kSize = 32;  // pixels
+
+  TileTracer(const TraceRequest& request, const RtScene& scene, EffectBuffers& effects);
+
+  /// The tile whose lower left pixel is (x0, y0).
+  void trace(int x0, int y0);
+
+  const RayCounts& rays() const { return rays_; }
+  double trace_calls_ms() const { return trace_calls_ms_; }
+  const std::vector<uint64_t>& rays_by_unit() const { return rays_by_unit_; }
+
+ private:
+  /// A reflection or refraction ray on its way.
+  struct Path {
+    vec3 origin;
+    vec3 direction;
+    vec3 throughput;   // what its radiance is multiplied with
+    float importance;  // product of the reflectivities and transparencies along it
+    uint32_t pixel;    // in the picture
+    uint8_t depth;     // 1: from the G-buffer
+    bool reflected;    // goes to M, else to R
+  };
+  /// A pixel of the tile that something is traced for.
+  struct Pixel {
+    uint32_t index;
+    uint32_t unit;
+    uint8_t effects;
+    Surface surface;  // faces the viewer
+    vec3 to_viewer;
+    float entering;  // 1 where the mesh's own side faces the viewer, else -1
+  };
+
+  void gather_pixels(int x0, int y0);
+  void trace_primary_shadows();
+  void start_paths();
+  void trace_depth();
+  void shade_hit(const Path& path, const RTCRayHit& ray);
+  void add_lighting(const Path& path, const Surface& facing, const vec3& to_viewer,
+                    const vec3& weight, float distance);
+  void spawn(const Path& from, const Surface& facing, bool entering, float distance,
+             float weight_reflection, float weight_refraction, float reflectivity,
+             float transparency);
+  uint32_t unit_of(uint32_t pixel) const;
+  void count(uint32_t unit, uint64_t& kind);
+
+  const TraceRequest& request_;
+  const RtScene& rt_;
+  const Scene& scene_;
+  EffectBuffers& effects_;
+  CameraRays camera_;
+
+  std::vector<Pixel> pixels_;
+  std::vector<Path> paths_;
+  std::vector<Path> next_paths_;
+  std::vector<RTCRayHit> hits_;
+  ShadowQueue shadows_;
+  RayCounts rays_;
+  double trace_calls_ms_ = 0.0;
+  std::vector<uint64_t> rays_by_unit_;
+};
+
+}  // namespace kestrel
