@@ -41,16 +41,18 @@ double parse_boolean(const Parameter& p, std::string_view text) {
 }
 
 vec3 parse_color(const Parameter& p, std::string_view text) {
-  vec3 color(0.0f);
-  for (int i = 0; i < 3; ++i) {
-    const size_t end = i < 2 ? text.find(' ') : text.size();
-    if (end == std::string_view::npos) {
-      fail(ErrorCode::invalid_argument, "'{}' takes three numbers: red, green and blue.", p.name);
-    }
-    color[i] = static_cast<float>(parse_number(p, text.substr(0, end)));
-    text.remove_prefix(std::min(end + 1, text.size()));
+  std::vector<std::string_view> words;
+  for (std::string_view rest = text; rest.find_first_not_of(' ') != std::string_view::npos;) {
+    rest.remove_prefix(rest.find_first_not_of(' '));
+    words.push_back(rest.substr(0, rest.find(' ')));
+    rest.remove_prefix(words.back().size());
   }
-  return color;
+  if (words.size() != 3) {
+    fail(ErrorCode::invalid_argument,
+         "'{}' is no value of '{}'. Use three numbers, red, green and blue: \"0.5 0.5 0.5\".", text,
+         p.name);
+  }
+  return vec3(parse_number(p, words[0]), parse_number(p, words[1]), parse_number(p, words[2]));
 }
 
 /// A row with the way to its field, as text.
@@ -99,6 +101,7 @@ constexpr auto kReal = ParameterType::real;
 constexpr auto kColor = ParameterType::color;
 constexpr auto kEnum = ParameterType::enumeration;
 
+// clang-format off: a row reads name, type, default, range, items, unit, letter, help.
 const std::vector<Row<Settings>>& scene_rows() {
   using S = Settings;
   static const std::vector<Row<S>> rows = {
@@ -155,7 +158,7 @@ const std::vector<Row<Settings>>& scene_rows() {
           {"threads", kScene, kInt, "0", 0, 1024, {}, "", "",
            "Processor threads to use, 0 for all. The picture does not depend on it"}),
       row(&S::validate_areas,
-          {"validate_areas", kScene, kBool, "false", 0, 1, {}, "", "A",
+          {"validate_areas", kScene, kBool, "false", 0, 0, {}, "", "A",
            "Also measure visible areas with occlusion queries and report objects whose area "
            "differs. Needs OpenGL; for checking only"}),
   };
@@ -164,8 +167,7 @@ const std::vector<Row<Settings>>& scene_rows() {
 
 const std::vector<Row<ObjectSettings>>& object_rows() {
   using S = ObjectSettings;
-  static constexpr auto kModes = {std::string_view("auto"), std::string_view("always"),
-                                  std::string_view("never")};
+  static const std::vector<std::string_view> kModes = {"auto", "always", "never"};
   static const std::vector<Row<S>> rows = {
       row(&S::relevance,
           {"relevance", kObject, kReal, "1", 0, 1e6, {}, "", "K",
@@ -187,6 +189,7 @@ const std::vector<Row<ObjectSettings>>& object_rows() {
   };
   return rows;
 }
+// clang-format on
 
 template <typename S>
 const Row<S>& find_row(const std::vector<Row<S>>& rows, std::string_view name) {

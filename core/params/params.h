@@ -68,7 +68,7 @@ struct Parameter {
 
 const std::vector<Parameter>& parameter_table();
 
-/// The row called `name` in `scope`; throws Error(invalid_argument) that lists the near names.
+/// The row called `name` in `scope`; throws Error(invalid_argument) that lists the known ones.
 const Parameter& find_parameter(ParameterScope scope, std::string_view name);
 
 /// Sets one field from text; throws Error(invalid_argument) naming range or items when it is off.
