@@ -3,49 +3,61 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "frame/frame.h"
+#include "stages/ray_cost.h"
+#include "stages/selection_graph.h"
 
 namespace kestrel {
 
-/// A node of the selection graph: what one unit costs and how relevant it is.
-struct SelectionNode {
-  double cost = 0.0;       // C, same unit as the budget
-  double relevance = 0.0;  // R
-};
-
-/// The greedy walk over the graph of section 3.2: repeatedly take the costliest node left; drop it
-/// if it does not fit what is left of the budget; else select the most relevant node among it and
-/// those of smaller or equal cost. Ties: lower index first (cost: listed first). Returns one flag a
-/// node. O(n log n).
-std::vector<bool> select_nodes(const std::vector<SelectionNode>& nodes, double budget);
-
 class HeuristicStage {
  public:
-  /// Chooses units from what the G-buffer shows, and writes its heuristic mask.
-  /// `Settings::selection` may bypass the graph (all, none); EffectMode overrides are honoured:
-  /// `always` effects are traced whatever the budget and their cost is taken off it first, `never`
-  /// ones are neither traced nor counted in Q.
+  /// Chooses units from what the G-buffer shows, and writes its heuristic mask; once a frame, as
+  /// what it selects is the next run's S. `Settings::selection` may bypass the graph (all, none);
+  /// EffectMode overrides are honoured: `always` effects are traced whatever the budget and their
+  /// cost is taken off it first, `never` ones are neither traced nor counted in Q.
+  /// A budget needs costs: while they are unknown, all visible units are selected, for the probe
+  /// to measure, and this does not count as S.
   Selection run(const FrameInputs& inputs, GBuffer& gbuffer);
 
   /// Learns from a traced frame: milliseconds per ray (T is in milliseconds) and, where a unit's
-  /// cost setting is 0, its own E from the rays it really needed. `trace_ms` is stage 3's wall
-  /// time, or a probe's, and `coverage` the share of the selected pixels it traced (0…1].
+  /// cost setting is 0, its own E from the rays it really needed; afterwards Σ C over what was
+  /// traced is its time, smoothed. Fills `ms` and `traced_rays` of each unit. `selection` is that
+  /// of the last run(), `trace_ms` stage 3's wall time, or a probe's, and `coverage` the share of
+  /// the selected pixels it traced (0…1].
   void learn(const FrameInputs& inputs, Selection& selection, const EffectBuffers& effects,
              double trace_ms, double coverage = 1.0);
 
-  /// Whether costs were measured at least once; before that, a probe should come first.
-  bool calibrated() const { return ms_per_ray_ > 0.0; }
+  /// Whether costs are known; while they are not, a probe should come first. They are given up as
+  /// out of date after a second or so in which nothing fitted the budget and so nothing was
+  /// learned.
+  bool calibrated() const { return ray_cost_.known(); }
 
   /// Forgets what was selected and learned (another scene).
-  void reset();
+  void reset() { *this = HeuristicStage(); }
 
  private:
-  double ms_per_ray_ = 0.0;
-  std::vector<bool> was_selected_;    // by unit: S
-  std::vector<float> learned_cost_;   // by unit: E, 0 = not yet known
-  std::vector<std::string> names_;    // units of the last frame, to match S and E by name
+  /// What outlives a frame, by unit.
+  struct UnitMemory {
+    std::string name;           // matches units of one frame with those of the next
+    bool was_selected = false;  // S
+    float cost = 0.0f;          // E as learned, 0 = not yet known
+  };
+
+  void match_units(const std::vector<Unit>& units);
+  void estimate(const FrameInputs& inputs, Selection& selection) const;
+  void choose(const Scene& scene, Selection& selection);
+  double learn_unit_costs(const Scene& scene, const Selection& selection, double coverage);
+
+  RayCost ray_cost_;
+  std::vector<UnitMemory> memory_;  // parallel to the scene's units
+  int starved_frames_ = 0;          // frames in a row in which nothing fitted
 };
+
+/// Sets the mask to 1 on the pixels of units of which some effect is traced, to 0 elsewhere. run()
+/// has done it for its own G-buffer; further samples of the frame have theirs.
+void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer);
 
 }  // namespace kestrel
