@@ -21,6 +21,7 @@ import common
 SCENE_FILE = "backyard/backyard.blend"
 SUN_ENERGY = 9.0  # W/m2
 ENVIRONMENT_STRENGTH = 1.1
+PAINT = {"house": (0.40, 0.35, 0.29), "window": (0.08, 0.11, 0.16)}  # less bright than the file's
 TREES = ("aspen", "birch", "maple")
 PLANTS = ("bush", "clover", "flowers", "grass")
 
@@ -61,9 +62,18 @@ def join_plants():
 
 def add_balls():
     common.add_sphere("GazingBall", (-2.6, -7.4, 0.75), 0.75, common.mirror("Mirror"), 64, 32)
-    common.add_sphere("GlassBall1", (-4.9, -9.2, 0.55), 0.5, common.glass("Glass1", ior=1.5), 64, 32)
+    common.add_sphere("GlassBall1", (-4.9, -9.2, 0.55), 0.5,
+                      common.glass("Glass1", ior=1.5), 64, 32)
     common.add_sphere("GlassBall2", (-1.2, -9.6, 0.45), 0.4,
                       common.glass("Glass2", (0.75, 0.93, 1.0), 1.33), 64, 32)
+
+
+def paint():
+    for material in bpy.data.materials:
+        for prefix, color in PAINT.items():
+            if material.name.startswith(prefix):
+                shader = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+                shader.inputs["Base Color"].default_value = (*color, 1.0)
 
 
 def set_sky():
@@ -77,6 +87,7 @@ def main():
     args = common.parse_args(__doc__, add_arguments)
     open_file(common.require_data(SCENE_FILE))
     common.make_all_matte()
+    paint()
     if not args.instances:
         join_plants()
     add_balls()

@@ -245,7 +245,7 @@ def glass(name, color=(1.0, 1.0, 1.0), ior=1.45):
 
 
 def make_matte(material):
-    """Turn a material into Principled without specular, keeping its colour, alpha and normal images.
+    """Make a material Principled without specular, keeping its colour, alpha and normal images.
 
     Images that then feed nothing (roughness, metallic) are dropped, so they are never loaded.
     """

@@ -78,8 +78,8 @@ def leaf_image():
 def add_stage():
     common.add_plane("Floor", (0, 0, 0), (FLOOR_SIZE, FLOOR_SIZE),
                      common.principled("Floor", image=checker_image()))
-    common.add_box("BackWall", (0, 5.2, 1.8), (16.0, 0.3, 3.6),
-                   common.diffuse("Wall", (0.62, 0.56, 0.50)))
+    common.add_box("BackWall", (0, 5.2, 2.6), (16.0, 0.3, 5.2),
+                   common.diffuse("Wall", (0.34, 0.28, 0.27)))
     for index, x in enumerate((-4.6, 4.6)):
         pillar = common.add_grid(f"Pillar{index + 1}", pillar_point, 64, 32, common.principled(
             f"Pillar{index + 1}", (0.70, 0.42, 0.30), normal_image=brick_normal_image()))
@@ -93,7 +93,8 @@ def pillar_point(u, v):
 
 def add_balls():
     common.add_sphere("MirrorBall", (-1.75, 0.9, 1.15), 1.15, common.mirror("Silver"), 128, 64)
-    common.add_sphere("GlassBall", (1.05, -0.9, 0.85), 0.85, common.glass("Glass", ior=1.45), 128, 64)
+    common.add_sphere("GlassBall", (1.05, -0.9, 0.85), 0.85,
+                      common.glass("Glass", ior=1.45), 128, 64)
     common.add_sphere("AmberBall", (-0.55, -1.75, 0.38), 0.38,
                       common.glass("Amber", (1.0, 0.66, 0.28), 1.5), 96, 48)
     common.add_sphere("GoldBall", (3.3, 0.2, 0.55), 0.55,
@@ -103,13 +104,15 @@ def add_balls():
 def add_boxes():
     colors = {"Red": (0.72, 0.06, 0.05), "Green": (0.08, 0.46, 0.12), "Blue": (0.06, 0.16, 0.62),
               "Yellow": (0.85, 0.62, 0.06)}
-    places = {"Red": ((0.1, 2.9, 0.75), (0.9, 0.9, 1.5), 25), "Green": ((-3.9, -0.5, 0.4), (0.8, 0.8, 0.8), 15),
-              "Blue": ((1.9, 2.2, 1.0), (0.8, 0.8, 2.0), -20), "Yellow": ((-2.9, -1.8, 0.25), (0.5, 0.5, 0.5), 40)}
+    places = {"Red": ((0.1, 2.9, 0.75), (0.9, 0.9, 1.5), 25),
+              "Green": ((-3.7, -0.1, 0.4), (0.8, 0.8, 0.8), 15),
+              "Blue": ((1.9, 2.2, 1.0), (0.8, 0.8, 2.0), -20),
+              "Yellow": ((-2.5, -1.7, 0.25), (0.5, 0.5, 0.5), 40)}
     for name, (location, size, turn) in places.items():
         common.add_box(f"{name}Box", location, size, common.diffuse(name, colors[name]), turn)
     common.add_box("Crate", (3.25, 1.9, 0.6), (1.2, 1.2, 1.2),
                    common.principled("Crate", image=crate_image()), 30)
-    common.add_box("GlassCube", (2.75, -1.75, 0.35), (0.7, 0.7, 0.7),
+    common.add_box("GlassCube", (2.45, -1.95, 0.35), (0.7, 0.7, 0.7),
                    common.glass("AquaGlass", (0.70, 0.95, 0.96), 1.33), 35)
 
 
@@ -121,12 +124,12 @@ def add_leaf_screen():
 
 
 def add_lights():
-    common.set_world((0.42, 0.55, 0.78), 0.45)
-    common.add_sun("Sun", (0.55, 0.75, -1.0), 2.6, (1.0, 0.95, 0.86))
-    common.add_point("Lamp", (2.2, -2.6, 3.6), 420.0, (1.0, 0.80, 0.58))
+    common.set_world((0.42, 0.55, 0.78), 0.18)
+    common.add_sun("Sun", (0.85, 0.45, -1.0), 3.6, (1.0, 0.95, 0.86))
+    common.add_point("Lamp", (2.2, -2.6, 3.6), 260.0, (1.0, 0.80, 0.58))
     common.add_spot("SpotBlue", (-5.0, -3.2, 4.2), (-1.6, 1.2, 0.4), 900.0, 38.0, 0.1,
                     (0.62, 0.78, 1.0))
-    common.add_spot("SpotRose", (4.8, 0.5, 4.4), (0.6, 4.9, 1.6), 800.0, 34.0, 0.05,
+    common.add_spot("SpotRose", (4.8, 0.5, 4.4), (0.8, 4.9, 2.2), 900.0, 24.0, 0.05,
                     (1.0, 0.62, 0.60))
 
 
@@ -138,7 +141,7 @@ def main():
     add_boxes()
     add_leaf_screen()
     add_lights()
-    common.add_camera((0.35, -7.2, 2.5), (0.05, 0.4, 0.95), 34.0)
+    common.add_camera((0.35, -7.2, 2.5), (0.05, 0.4, 1.0), 31.0)
     common.finish("showcase", args)
 
 

@@ -4,9 +4,9 @@
     blender -b --factory-startup --python scenes/blend/sponza_armadillo.py -- --out FILE.blend
 
 Counts follow the paper's Table 4: 25 objects (Sponza joined into 3, a pedestal, the armadillo and
-20 glass spheres), none reflective, 21 refractive. Table 4's 292,544 triangles are read as the whole
-scene's: 262,087 of Sponza, 12 of the pedestal, 20 spheres of 360, and the armadillo collapsed to the
-23,245 that remain. `--full` keeps the armadillo's own 292,544 triangles (561,843 in all). Needs the
+20 glass spheres), none reflective, 21 refractive. Table 4's 292,544 triangles are read as those of
+the whole scene: 262,087 of Sponza, 12 of the pedestal, 20 spheres of 360, and the armadillo
+collapsed to the 23,245 that remain. `--full` keeps the armadillo's own 292,544 triangles (561,843 in all). Needs the
 scene data's `sponza` and `stanford` folders; a stand-in hall and a lumpy ball replace what is
 missing, and a line on stdout says so. Writes FILE.blend.
 """
@@ -29,7 +29,8 @@ TINTS = [(1.0, 1.0, 1.0), (0.70, 0.92, 1.0), (1.0, 0.80, 0.62), (0.78, 1.0, 0.76
 
 
 def add_arguments(parser):
-    parser.add_argument("--full", action="store_true", help="keep the armadillo's 292,544 triangles")
+    parser.add_argument("--full", action="store_true",
+                        help="keep the armadillo's 292,544 triangles")
 
 
 def import_armadillo(path):
@@ -107,7 +108,8 @@ def main():
     add_spheres()
     add_statue(args.full)
     sponza_hall.add_hall_lights()
-    common.add_camera((11.4, NAVE_Y - 0.9, FLOOR_Z + 1.9), (2.0, NAVE_Y + 0.1, FLOOR_Z + 1.75), 32.0)
+    common.add_camera((11.4, NAVE_Y - 0.9, FLOOR_Z + 1.9),
+                      (2.0, NAVE_Y + 0.1, FLOOR_Z + 1.75), 32.0)
     common.finish("sponza_armadillo", args)
 
 

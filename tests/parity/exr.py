@@ -51,7 +51,7 @@ def rgb_names(path, planes, layer):
 def read_converted(path, layer):
     tool = shutil.which("oiiotool")
     if tool is None:
-        raise ValueError(f"{path}: tiled or compressed in a way that needs oiiotool (not installed)")
+        raise ValueError(f"{path}: tiled, or compressed so that oiiotool is needed (not found)")
     with tempfile.TemporaryDirectory() as folder:
         plain = Path(folder) / "plain.exr"
         subprocess.run([tool, str(path), "--compression", "zip", "--scanline", "-d", "float",

@@ -4,7 +4,8 @@
     blender -b --factory-startup --python tests/parity/render_references.py -- [--out DIR] [NAME...]
 
 Writes `tests/references/cycles/NAME.exr` (or DIR/NAME.exr): scene-linear RGB, half floats, ZIP, no
-metadata. Prints the PSNR in dB against the file that was there before. Needs Cycles and numpy in
+metadata. Prints the PSNR in dB against the file that was there before; with `--seed` and a copy of
+the references as DIR that is the references' own noise. Needs Cycles and numpy in
 Blender's Python.
 """
 
@@ -27,14 +28,16 @@ def parse_args():
     parser = argparse.ArgumentParser(prog="render_references.py")
     parser.add_argument("--out", type=Path, default=cases.REFERENCE_FOLDER, metavar="DIR")
     parser.add_argument("--samples", type=int, help="per pixel, instead of the case's own")
+    parser.add_argument("--seed", type=int, default=1, help="of Cycles' sampler")
     parser.add_argument("names", nargs="*", help="cases (all by default)")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
 
 
-def render(case, samples):
+def render(case, samples, seed):
     """Scene-linear pixels of a case as Cycles draws it."""
     scene = scenes.build(case)
     scene.render.engine = "CYCLES"
+    scene.cycles.seed = seed
     if samples:
         scene.cycles.samples = samples
     settings = scene.render.image_settings
@@ -51,7 +54,7 @@ def main():
     args.out.mkdir(parents=True, exist_ok=True)
     for case in [cases.find_case(name) for name in args.names] or cases.CASES:
         start = time.monotonic()
-        pixels = render(case, args.samples)
+        pixels = render(case, args.samples, args.seed)
         path = args.out / f"{case.name}.exr"
         change = "new"
         if path.exists():
