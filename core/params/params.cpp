@@ -101,7 +101,8 @@ constexpr auto kReal = ParameterType::real;
 constexpr auto kColor = ParameterType::color;
 constexpr auto kEnum = ParameterType::enumeration;
 
-// clang-format off: a row reads name, type, default, range, items, unit, letter, help.
+// A row reads: name, scope, type, default, range, items, unit, letter, help.
+// clang-format off
 const std::vector<Row<Settings>>& scene_rows() {
   using S = Settings;
   static const std::vector<Row<S>> rows = {
