@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every difference between the Blender versions that Kestrel supports: 3.4, 4.3 and 5.2.
+
+Each function looks at what the object at hand offers instead of comparing version numbers.
+"""
+
+import numpy as np
+
+INT, FLOAT = np.int32, np.float32
+
+
+def datablock_key(datablock):
+    """Text that names a datablock for as long as the file is open, across undo and copies."""
+    uid = getattr(datablock, "session_uid", 0)
+    kind = datablock.bl_rna.identifier
+    if uid:
+        return f"{kind}/{uid}"
+    library = datablock.library
+    return f"{kind}/{datablock.name_full}/{library.filepath if library else ''}"
+
+
+# ---- meshes ----------------------------------------------------------------------------------
+
+def _attribute(mesh, name, channel, width, count, dtype):
+    """An attribute's values as (count, width), or None where the mesh has none of that name."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or len(attribute.data) != count:
+        return None
+    values = np.empty(count * width, dtype)
+    attribute.data.foreach_get(channel, values)
+    return values.reshape(count, width)
+
+
+def vertex_positions(mesh):
+    """float32 (V, 3), object space."""
+    count = len(mesh.vertices)
+    values = _attribute(mesh, "position", "vector", 3, count, FLOAT)
+    if values is None:
+        values = np.empty(3 * count, FLOAT)
+        mesh.vertices.foreach_get("co", values)
+    return values.reshape(count, 3)
+
+
+def corner_vertices(mesh):
+    """int32 (C,): the vertex of each corner."""
+    count = len(mesh.loops)
+    values = _attribute(mesh, ".corner_vert", "value", 1, count, INT)
+    if values is None:
+        values = np.empty(count, INT)
+        mesh.loops.foreach_get("vertex_index", values)
+    return values.reshape(count)
+
+
+def corner_normals(mesh):
+    """float32 (C, 3), object space; None where every face is flat."""
+    values = np.empty(3 * len(mesh.loops), FLOAT)
+    if hasattr(mesh, "corner_normals"):  # 4.1 on
+        if mesh.normals_domain == "FACE":
+            return None
+        mesh.corner_normals.foreach_get("vector", values)
+    else:
+        smooth = np.empty(len(mesh.polygons), bool)
+        mesh.polygons.foreach_get("use_smooth", smooth)
+        if not smooth.any() and not mesh.has_custom_normals:
+            return None
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", values)
+        mesh.free_normals_split()
+    return values.reshape(-1, 3)
+
+
+def corner_uvs(layer):
+    """float32 (C, 2) of a UV layer."""
+    values = np.empty(2 * len(layer.data), FLOAT)
+    if hasattr(layer, "uv"):  # 3.5 on
+        layer.uv.foreach_get("vector", values)
+    else:
+        layer.data.foreach_get("uv", values)
+    return values.reshape(-1, 2)
+
+
+def polygon_materials(mesh):
+    """int32 (P,): the material slot of each polygon; None where all use the first."""
+    values = _attribute(mesh, "material_index", "value", 1, len(mesh.polygons), INT)
+    return None if values is None else values.reshape(-1)
+
+
+def triangle_polygons(mesh):
+    """int32 (T,): the polygon that each loop triangle comes from."""
+    values = np.empty(len(mesh.loop_triangles), INT)
+    if hasattr(mesh, "loop_triangle_polygons"):  # 3.6 on
+        mesh.loop_triangle_polygons.foreach_get("value", values)
+    else:
+        mesh.loop_triangles.foreach_get("polygon_index", values)
+    return values
+
+
+# ---- render results --------------------------------------------------------------------------
+
+def write_passes(layer, pixels_of):
+    """Fill a result layer. `pixels_of(pass)` gives its float32 pixels, channels interleaved."""
+    passes = list(layer.passes)
+    pixels = [np.ascontiguousarray(pixels_of(item), FLOAT).reshape(-1) for item in passes]
+    try:
+        for item, values in zip(passes, pixels):
+            item.rect.foreach_set(values)  # 4.1 on
+    except (AttributeError, TypeError, RuntimeError):
+        # One call for all passes of the layer, in its order: assigning one by one takes seconds.
+        layer.passes.foreach_set("rect", np.concatenate(pixels))
+
+
+# ---- materials, lights -----------------------------------------------------------------------
+
+def node_input(node, *names):
+    """The first of these sockets that this version's node has; None where it has none."""
+    for name in names:
+        if name in node.inputs:
+            return node.inputs[name]
+    return None
+
+
+def specular_f0(node, specular, ior):
+    """Reflectance at normal incidence of a Principled BSDF's dielectric part."""
+    if "Specular IOR Level" in node.inputs:  # 4.0 on: 0.5 leaves what the index gives
+        return ((ior - 1.0) / (ior + 1.0)) ** 2 * 2.0 * specular
+    return 0.08 * specular
+
+
+def uses_nodes(datablock):
+    """Whether a material, light or world is described by its node tree."""
+    return datablock.node_tree is not None and getattr(datablock, "use_nodes", True)
+
+
+def alpha_cutoff(material):
+    """Alpha below which a masked surface is absent."""
+    if getattr(material, "blend_method", "") == "CLIP":
+        return material.alpha_threshold
+    return 0.5
+
+
+def light_factor(light):
+    """What newer versions multiply a light's colour and energy with."""
+    factor = np.full(3, 2.0 ** getattr(light, "exposure", 0.0))
+    if getattr(light, "use_temperature", False):
+        factor = factor * np.array(light.temperature_color[:3])
+    return factor
+
+
+def light_casts_shadow(light):
+    """Both switches count where there are two: Blender's own and Cycles'."""
+    cycles = getattr(light, "cycles", None)
+    return (getattr(light, "use_shadow", True) and
+            bool(getattr(cycles, "cast_shadow", True)))

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Messages: the library's and the add-on's own, on the terminal and collected for the artist."""
+
+import contextlib
+import sys
+import threading
+
+from .native import capi, loader
+
+LEVELS = ("debug", "info", "warning", "error")
+
+_lock = threading.Lock()
+_collectors = []
+_callback = None  # ctypes does not keep it alive
+
+
+def _write(level, text):
+    print(f"kestrel: {level}: {text}", flush=True, file=sys.stdout)
+
+
+def warning(text):
+    _write("warning", text)
+    with _lock:
+        for messages in _collectors:
+            messages.append(text)
+
+
+def error(text):
+    _write("error", text)
+
+
+@contextlib.contextmanager
+def collecting():
+    """The list that this block's warnings go to, from whatever thread."""
+    messages = []
+    with _lock:
+        _collectors.append(messages)
+    try:
+        yield messages
+    finally:
+        with _lock:
+            _collectors.remove(messages)
+
+
+def _from_library(_user, level, text):
+    words = (text or b"").decode("utf-8", "replace")
+    if level == capi.LOG_WARNING:
+        warning(words)
+    else:
+        _write(LEVELS[min(max(level, 0), 3)], words)
+
+
+def register():
+    global _callback
+    library = loader.library()
+    if library is not None:
+        _callback = capi.LogCallback(_from_library)
+        library.set_log_callback(_callback)
+
+
+def unregister():
+    global _callback
+    library = loader.library()
+    if library is not None and _callback is not None:
+        library.set_log_callback(None)
+    _callback = None

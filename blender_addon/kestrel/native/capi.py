@@ -1,0 +1,423 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""kestrel.h for ctypes: the structs, the functions, and thin owners of its handles.
+
+Arrays are C-contiguous numpy arrays; the library copies them during the call. Every failure
+raises KestrelError with the library's own text, which names the cause and a remedy.
+"""
+
+import ctypes
+from ctypes import (POINTER, Structure, byref, c_bool, c_char_p, c_float, c_int, c_int32, c_size_t,
+                    c_uint8, c_uint32, c_uint64, c_void_p)
+
+import numpy as np
+
+ABI_VERSION = 1  # KESTREL_ABI_VERSION
+
+ERROR_NONE = 0
+ERROR_CANCELLED = 6
+
+LOG_WARNING = 2
+LOG_ERROR = 3
+
+EXTENSION_REPEAT, EXTENSION_CLAMP, EXTENSION_CLIP = range(3)
+ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND = range(3)
+LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT = range(3)
+KIND_MESH, KIND_TEXTURE, KIND_MATERIAL, KIND_LIGHT, KIND_OBJECT = range(5)
+PERSPECTIVE, ORTHOGRAPHIC = range(2)
+WORLD_COLOR, WORLD_EQUIRECTANGULAR, WORLD_CUBE = range(3)
+
+float_p = POINTER(c_float)
+uint32_p = POINTER(c_uint32)
+uint64_p = POINTER(c_uint64)
+uint8_p = POINTER(c_uint8)
+
+LogCallback = ctypes.CFUNCTYPE(None, c_void_p, c_int, c_char_p)
+ProgressCallback = ctypes.CFUNCTYPE(c_bool, c_void_p, c_float, c_char_p)
+
+
+class KestrelError(Exception):
+    """What went wrong and what to do about it, in words for the artist."""
+
+
+class Cancelled(KestrelError):
+    """The frame was given up because someone asked for it."""
+
+
+class Mesh(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("vertex_count", c_size_t),
+        ("positions", float_p),
+        ("triangle_count", c_size_t),
+        ("triangles", uint32_p),
+        ("corner_normals", float_p),
+        ("corner_uvs", float_p),
+        ("corner_tangents", float_p),
+        ("triangle_materials", uint32_p),
+    ]
+
+
+class TextureOptions(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("srgb", c_bool),
+        ("nearest", c_bool),
+        ("extension", c_int32),
+    ]
+
+
+class Material(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("emission", c_float * 3),
+        ("ambient", c_float * 3),
+        ("diffuse", c_float * 4),
+        ("specular", c_float * 4),
+        ("optical", c_float * 3),
+        ("reflection_color", c_float * 3),
+        ("transmission_color", c_float * 3),
+        ("emission_texture", c_uint64),
+        ("ambient_texture", c_uint64),
+        ("diffuse_texture", c_uint64),
+        ("specular_texture", c_uint64),
+        ("normal_texture", c_uint64),
+        ("optical_texture", c_uint64),
+        ("normal_strength", c_float),
+        ("tiling", c_float * 2),
+        ("offset", c_float * 2),
+        ("casts_shadow", c_bool),
+        ("alpha_mode", c_int32),
+        ("alpha_cutoff", c_float),
+    ]
+
+
+class Light(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("type", c_int32),
+        ("color", c_float * 3),
+        ("position", c_float * 3),
+        ("direction", c_float * 3),
+        ("attenuation", c_float * 3),
+        ("spot_angle", c_float),
+        ("spot_blend", c_float),
+        ("specular_factor", c_float),
+        ("casts_shadow", c_bool),
+    ]
+
+
+class Object(Structure):
+    _fields_ = [
+        ("name", c_char_p),
+        ("mesh", c_uint64),
+        ("materials", uint64_p),
+        ("material_count", c_size_t),
+        ("world_from_object", c_float * 12),
+        ("unit", c_char_p),
+    ]
+
+
+class Camera(Structure):
+    _fields_ = [
+        ("projection", c_int32),
+        ("world_from_camera", c_float * 12),
+        ("left", c_float),
+        ("right", c_float),
+        ("bottom", c_float),
+        ("top", c_float),
+        ("near_clip", c_float),
+        ("far_clip", c_float),
+    ]
+
+
+class World(Structure):
+    _fields_ = [
+        ("kind", c_int32),
+        ("color", c_float * 3),
+        ("textures", c_uint64 * 6),
+        ("map_from_world", c_float * 9),
+    ]
+
+
+# name: (result, arguments). A result of c_int is a KestrelError to be checked.
+FUNCTIONS = {
+    "kestrelGetVersion": (c_char_p, []),
+    "kestrelGetAbiVersion": (c_uint32, []),
+    "kestrelGetError": (c_int, [POINTER(c_char_p)]),
+    "kestrelSetLogCallback": (None, [LogCallback, c_void_p]),
+    "kestrelSetLogLevel": (None, [c_int]),
+    "kestrelGetParameterTable": (c_char_p, []),
+    "kestrelNewDevice": (c_void_p, []),
+    "kestrelRetainDevice": (None, [c_void_p]),
+    "kestrelReleaseDevice": (None, [c_void_p]),
+    "kestrelGetDeviceInfo": (c_char_p, [c_void_p]),
+    "kestrelNewScene": (c_void_p, [c_void_p]),
+    "kestrelRetainScene": (None, [c_void_p]),
+    "kestrelReleaseScene": (None, [c_void_p]),
+    "kestrelSetMesh": (c_int, [c_void_p, c_uint64, POINTER(Mesh)]),
+    "kestrelSetTextureFile": (c_int, [c_void_p, c_uint64, c_char_p, POINTER(TextureOptions)]),
+    "kestrelSetTextureMemory": (
+        c_int, [c_void_p, c_uint64, c_char_p, c_size_t, POINTER(TextureOptions)]),
+    "kestrelSetTexturePixels8": (
+        c_int, [c_void_p, c_uint64, c_int, c_int, uint8_p, POINTER(TextureOptions)]),
+    "kestrelSetTexturePixelsFloat": (
+        c_int, [c_void_p, c_uint64, c_int, c_int, float_p, POINTER(TextureOptions)]),
+    "kestrelDefaultMaterial": (None, [POINTER(Material)]),
+    "kestrelSetMaterial": (c_int, [c_void_p, c_uint64, POINTER(Material)]),
+    "kestrelDefaultLight": (None, [POINTER(Light)]),
+    "kestrelSetLight": (c_int, [c_void_p, c_uint64, POINTER(Light)]),
+    "kestrelSetObject": (c_int, [c_void_p, c_uint64, POINTER(Object)]),
+    "kestrelSetObjectTransform": (c_int, [c_void_p, c_uint64, float_p]),
+    "kestrelSetObjectSetting": (c_int, [c_void_p, c_uint64, c_char_p, c_char_p]),
+    "kestrelRemove": (c_int, [c_void_p, c_int, c_uint64]),
+    "kestrelSetCamera": (c_int, [c_void_p, POINTER(Camera)]),
+    "kestrelSetWorld": (c_int, [c_void_p, POINTER(World)]),
+    "kestrelSetSetting": (c_int, [c_void_p, c_char_p, c_char_p]),
+    "kestrelGetSetting": (c_char_p, [c_void_p, c_char_p]),
+    "kestrelCommitScene": (c_int, [c_void_p]),
+    "kestrelNewRenderer": (c_void_p, [c_void_p]),
+    "kestrelRetainRenderer": (None, [c_void_p]),
+    "kestrelReleaseRenderer": (None, [c_void_p]),
+    "kestrelRender": (c_int, [c_void_p, c_int, c_int, ProgressCallback, c_void_p]),
+    "kestrelCancel": (None, [c_void_p]),
+    "kestrelGetFrameSize": (c_int, [c_void_p, POINTER(c_int), POINTER(c_int)]),
+    "kestrelGetPassCount": (c_size_t, [c_void_p]),
+    "kestrelGetPassName": (c_char_p, [c_void_p, c_size_t]),
+    "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
+    "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
+    "kestrelGetStats": (c_char_p, [c_void_p]),
+    "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
+}
+
+
+def declare(library):
+    """Give every function of a CDLL its types; AttributeError names a missing one."""
+    for name, (result, arguments) in FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = arguments
+    return library
+
+
+def encode(text):
+    return text.encode("utf-8", "replace")
+
+
+def pointer(array, kind, dtype):
+    """Pointer to an array's data, None for None. The caller keeps the array alive."""
+    if array is None:
+        return None
+    if array.dtype != dtype or not array.flags.c_contiguous:
+        raise TypeError(f"expected a contiguous array of {np.dtype(dtype)}, got {array.dtype}")
+    return array.ctypes.data_as(kind)
+
+
+class Library:
+    """The loaded library, its version checked."""
+
+    def __init__(self, cdll):
+        self.c = declare(cdll)
+        self._device = None
+
+    def version(self):
+        return self.c.kestrelGetVersion().decode()
+
+    def parameter_table(self):
+        """The table as JSON text."""
+        return self.c.kestrelGetParameterTable().decode()
+
+    def set_log_callback(self, callback):
+        """`callback` is a LogCallback, kept alive by the caller, or None for standard error."""
+        self.c.kestrelSetLogCallback(callback or LogCallback(), None)
+
+    def check(self, code):
+        if code != ERROR_NONE:
+            raise self.last_error()
+
+    def last_error(self):
+        message = c_char_p()
+        code = self.c.kestrelGetError(byref(message))
+        text = (message.value or b"").decode("utf-8", "replace")
+        if code == ERROR_CANCELLED:
+            return Cancelled(text or "The render was cancelled.")
+        return KestrelError(text or "Kestrel failed without giving a reason.")
+
+    def handle(self, value):
+        if not value:
+            raise self.last_error()
+        return c_void_p(value)
+
+    @property
+    def device(self):
+        """One device for everything that Blender does; made when first needed."""
+        if self._device is None:
+            self._device = self.handle(self.c.kestrelNewDevice())
+        return self._device
+
+    def device_info(self):
+        """JSON text about the machine. Starts OpenGL."""
+        text = self.c.kestrelGetDeviceInfo(self.device)
+        if text is None:
+            raise self.last_error()
+        return text.decode()
+
+    def release(self):
+        if self._device is not None:
+            self.c.kestrelReleaseDevice(self._device)
+            self._device = None
+
+    def default_material(self):
+        material = Material()
+        self.c.kestrelDefaultMaterial(byref(material))
+        return material
+
+    def default_light(self):
+        light = Light()
+        self.c.kestrelDefaultLight(byref(light))
+        return light
+
+
+class Scene:
+    """Owner of a scene handle. Ids are 64-bit, not 0; names are text."""
+
+    def __init__(self, library):
+        self.library = library
+        self.c = library.c
+        self._handle = library.handle(self.c.kestrelNewScene(library.device))
+
+    @property
+    def handle(self):
+        if self._handle is None:
+            raise KestrelError("The scene was freed. Start the render again.")
+        return self._handle
+
+    def release(self):
+        if self._handle is not None:
+            self.c.kestrelReleaseScene(self._handle)
+            self._handle = None
+
+    def set_mesh(self, ident, name, positions, triangles, corner_normals=None, corner_uvs=None,
+                 triangle_materials=None):
+        """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,)."""
+        mesh = Mesh(
+            encode(name), len(positions), pointer(positions, float_p, np.float32),
+            len(triangles), pointer(triangles, uint32_p, np.uint32),
+            pointer(corner_normals, float_p, np.float32),
+            pointer(corner_uvs, float_p, np.float32), None,
+            pointer(triangle_materials, uint32_p, np.uint32))
+        self.library.check(self.c.kestrelSetMesh(self.handle, ident, byref(mesh)))
+
+    def set_texture_file(self, ident, path, options):
+        self.library.check(self.c.kestrelSetTextureFile(
+            self.handle, ident, path.encode("utf-8", "surrogateescape"), byref(options)))
+
+    def set_texture_memory(self, ident, data, options):
+        self.library.check(self.c.kestrelSetTextureMemory(
+            self.handle, ident, data, len(data), byref(options)))
+
+    def set_texture_pixels(self, ident, pixels, options):
+        """uint8 or float32 (height, width, 4), row 0 at the bottom."""
+        height, width, _ = pixels.shape
+        if pixels.dtype == np.uint8:
+            code = self.c.kestrelSetTexturePixels8(
+                self.handle, ident, width, height, pointer(pixels, uint8_p, np.uint8),
+                byref(options))
+        else:
+            code = self.c.kestrelSetTexturePixelsFloat(
+                self.handle, ident, width, height, pointer(pixels, float_p, np.float32),
+                byref(options))
+        self.library.check(code)
+
+    def set_material(self, ident, material):
+        self.library.check(self.c.kestrelSetMaterial(self.handle, ident, byref(material)))
+
+    def set_light(self, ident, light):
+        self.library.check(self.c.kestrelSetLight(self.handle, ident, byref(light)))
+
+    def set_object(self, ident, name, unit, mesh, materials, world_from_object):
+        """`materials` are ids by slot, `world_from_object` 12 floats, column by column."""
+        slots = (c_uint64 * len(materials))(*materials)
+        item = Object(encode(name), mesh, slots, len(materials),
+                      (c_float * 12)(*world_from_object), encode(unit))
+        self.library.check(self.c.kestrelSetObject(self.handle, ident, byref(item)))
+
+    def set_object_transform(self, ident, world_from_object):
+        self.library.check(self.c.kestrelSetObjectTransform(
+            self.handle, ident, (c_float * 12)(*world_from_object)))
+
+    def set_object_setting(self, ident, name, value):
+        self.library.check(self.c.kestrelSetObjectSetting(
+            self.handle, ident, encode(name), encode(value)))
+
+    def remove(self, kind, ident):
+        self.library.check(self.c.kestrelRemove(self.handle, kind, ident))
+
+    def set_camera(self, camera):
+        self.library.check(self.c.kestrelSetCamera(self.handle, byref(camera)))
+
+    def set_world(self, world):
+        self.library.check(self.c.kestrelSetWorld(self.handle, byref(world)))
+
+    def set_setting(self, name, value):
+        self.library.check(self.c.kestrelSetSetting(self.handle, encode(name), encode(value)))
+
+    def get_setting(self, name):
+        value = self.c.kestrelGetSetting(self.handle, encode(name))
+        if value is None:
+            raise self.library.last_error()
+        return value.decode()
+
+    def commit(self):
+        self.library.check(self.c.kestrelCommitScene(self.handle))
+
+
+class Renderer:
+    """Owner of a renderer handle."""
+
+    def __init__(self, scene):
+        self.library = scene.library
+        self.c = scene.c
+        self._handle = self.library.handle(self.c.kestrelNewRenderer(scene.handle))
+
+    @property
+    def handle(self):
+        if self._handle is None:
+            raise KestrelError("The renderer was freed. Start the render again.")
+        return self._handle
+
+    def release(self):
+        if self._handle is not None:
+            self.c.kestrelReleaseRenderer(self._handle)
+            self._handle = None
+
+    def render(self, width, height, progress):
+        """Blocks. `progress(fraction, status)` is called from any thread; False cancels."""
+        def forward(_user, fraction, status):
+            return bool(progress(fraction, (status or b"").decode("utf-8", "replace")))
+        callback = ProgressCallback(forward)
+        self.library.check(self.c.kestrelRender(self.handle, width, height, callback, None))
+
+    def cancel(self):
+        self.c.kestrelCancel(self.handle)
+
+    def passes(self):
+        """Names and channels of the passes that can be read, in the library's order."""
+        names = [self.c.kestrelGetPassName(self.handle, index).decode()
+                 for index in range(self.c.kestrelGetPassCount(self.handle))]
+        return {name: self.c.kestrelGetPassChannels(self.handle, encode(name)).decode()
+                for name in names}
+
+    def read_pass(self, name, width, height):
+        """float32 (height * width, channels), row 0 at the bottom."""
+        channels = self.c.kestrelGetPassChannels(self.handle, encode(name))
+        if channels is None:
+            raise self.library.last_error()
+        pixels = np.empty((height * width, len(channels)), np.float32)
+        self.library.check(self.c.kestrelReadPass(
+            self.handle, encode(name), pointer(pixels, float_p, np.float32), pixels.size))
+        return pixels
+
+    def stats(self):
+        """JSON text about the last frame, None before the first."""
+        text = self.c.kestrelGetStats(self.handle)
+        return None if text is None else text.decode()

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What lives longer than a render: one core scene and renderer per Blender scene and view layer.
+
+Blender frees the engine object after every frame, so the sessions stand here, by key. They go when
+another file is opened, when the add-on is disabled and after a failed export.
+"""
+
+import hashlib
+import threading
+
+from .native import capi, loader
+
+_sessions = {}
+_lock = threading.Lock()
+
+
+def stable_id(text):
+    """64-bit id, never 0, the same in every run."""
+    value = int.from_bytes(hashlib.blake2b(text.encode("utf-8", "replace"),
+                                           digest_size=8).digest(), "little")
+    return value or 1
+
+
+def digest(*arrays):
+    """Fingerprint of arrays and None."""
+    state = hashlib.blake2b(digest_size=16)
+    for array in arrays:
+        state.update(b"-" if array is None else f"{array.dtype}{array.shape}".encode())
+        if array is not None:
+            state.update(array)
+    return state.digest()
+
+
+class Session:
+    """A core scene, its renderer, and what has been sent to them."""
+
+    def __init__(self, library):
+        self.scene = capi.Scene(library)
+        self.renderer = capi.Renderer(self.scene)
+        self.sent = {}              # (kind, id): what was sent last
+        self.sent_settings = set()  # units that were given settings
+        self.warned = set()         # texts that were already said
+        self._busy = threading.Lock()
+
+    def render(self, width, height, progress):
+        """Render a frame; blocks. `progress(fraction, status)` returns False to cancel."""
+        with self._busy:
+            self.renderer.render(width, height, progress)
+
+    def release(self):
+        """Free everything, after ending a render that is under way."""
+        self.renderer.cancel()
+        with self._busy:
+            self.renderer.release()
+            self.scene.release()
+
+
+class Export:
+    """One pass over Blender's data into a session's scene.
+
+    Items that are unchanged are not sent again; items that were not met are removed at the end.
+    """
+
+    # What refers to others goes before what it refers to.
+    REMOVAL_ORDER = (capi.KIND_OBJECT, capi.KIND_LIGHT, capi.KIND_MATERIAL, capi.KIND_TEXTURE,
+                     capi.KIND_MESH)
+
+    def __init__(self, session, say, environment_ior=1.0):
+        """`say(text)` takes warnings; each text is said once per session."""
+        self.session = session
+        self.environment_ior = environment_ior
+        self.scene = session.scene
+        self._say = say
+        self._met = set()   # (kind, id)
+        self.meshes = {}    # evaluated data: mesh id
+        self.materials = {}  # material key: id
+        self.textures = {}  # texture reference: id
+
+    def warn(self, text):
+        if text not in self.session.warned:
+            self.session.warned.add(text)
+            self._say(text)
+
+    def new_id(self, kind, text):
+        """Id of an item that is met for the first time in this export."""
+        ident = stable_id(text)
+        count = 0
+        while (kind, ident) in self._met:
+            count += 1
+            ident = stable_id(f"{text}#{count}")
+        self._met.add((kind, ident))
+        return ident
+
+    def put(self, kind, ident, content, send):
+        """Call `send()` unless this very content is there already."""
+        if self.session.sent.get((kind, ident)) != content:
+            send()
+            self.session.sent[kind, ident] = content
+
+    def put_object(self, ident, description, matrix):
+        """`description`: name, unit, mesh and materials. Only the matrix is sent if it alone
+        changed."""
+        key = (capi.KIND_OBJECT, ident)
+        before = self.session.sent.get(key)
+        if before == (description, matrix):
+            return
+        if before is not None and before[0] == description:
+            self.scene.set_object_transform(ident, matrix)
+        else:
+            self.scene.set_object(ident, *description, matrix)
+        self.session.sent[key] = (description, matrix)
+
+    def finish(self):
+        """Remove what is gone and publish the rest."""
+        gone = set(self.session.sent) - self._met
+        for kind in self.REMOVAL_ORDER:
+            for item in sorted(item for item in gone if item[0] == kind):
+                self.scene.remove(*item)
+                del self.session.sent[item]
+        self.scene.commit()
+
+
+def acquire(key):
+    """The session of this key, made when there is none. Raises KestrelError."""
+    library = loader.require()
+    with _lock:
+        if key not in _sessions:
+            _sessions[key] = Session(library)
+        return _sessions[key]
+
+
+def drop(key):
+    """Free one session, if there is one."""
+    with _lock:
+        session = _sessions.pop(key, None)
+    if session is not None:
+        session.release()
+
+
+def drop_all():
+    with _lock:
+        sessions = list(_sessions.values())
+        _sessions.clear()
+    for session in sessions:
+        session.release()
+
+
+def count():
+    """How many sessions are alive."""
+    return len(_sessions)

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The camera: Blender's lens, sensor and shift as the window of the plane z = -1."""
+
+from ..native import capi
+from .object import columns
+
+
+def frame_size(render):
+    """(width, height) of the whole picture in pixels, before any border."""
+    scale = render.resolution_percentage / 100.0
+    return (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
+
+
+def border(render, width, height):
+    """Pixels (left, bottom, right, top) that are rendered."""
+    if not render.use_border:
+        return 0, 0, width, height
+    left = min(int(render.border_min_x * width), width - 1)
+    bottom = min(int(render.border_min_y * height), height - 1)
+    return (left, bottom, max(int(render.border_max_x * width), left + 1),
+            max(int(render.border_max_y * height), bottom + 1))
+
+
+def window(camera, render, width, height):
+    """(left, right, bottom, top) of the whole picture: on the plane z = -1 for perspective, in
+    metres for orthographic. The sensor fits the wider side unless it is told which."""
+    aspect_x, aspect_y = render.pixel_aspect_x * width, render.pixel_aspect_y * height
+    horizontal = camera.sensor_fit == "HORIZONTAL" or (
+        camera.sensor_fit == "AUTO" and aspect_x >= aspect_y)
+    sensor = camera.sensor_height if camera.sensor_fit == "VERTICAL" else camera.sensor_width
+    extent = camera.ortho_scale if camera.type == "ORTHO" else sensor / camera.lens
+    unit = extent / (aspect_x if horizontal else aspect_y)
+    half_x, half_y = 0.5 * aspect_x * unit, 0.5 * aspect_y * unit
+    shift_x, shift_y = camera.shift_x * extent, camera.shift_y * extent
+    return shift_x - half_x, shift_x + half_x, shift_y - half_y, shift_y + half_y
+
+
+def crop(whole, area, width, height):
+    """The part of a window that shows these pixels."""
+    left, right, bottom, top = whole
+    x, y = (right - left) / width, (top - bottom) / height
+    return (left + area[0] * x, left + area[2] * x, bottom + area[1] * y, bottom + area[3] * y)
+
+
+def rigid(matrix):
+    """The matrix without its scale."""
+    location, rotation, _ = matrix.decompose()
+    result = rotation.to_matrix().to_4x4()
+    result.translation = location
+    return result
+
+
+def sync_camera(export, obj, render):
+    """Send the camera; returns the (width, height) of what is rendered."""
+    if obj is None:
+        raise capi.KestrelError(
+            "The scene has no camera. Add one with Add > Camera, or make one the scene's camera "
+            "in Scene properties.")
+    if obj.type != "CAMERA":
+        raise capi.KestrelError(
+            f"'{obj.name}' is the scene's camera but no camera object, which Kestrel cannot look "
+            "through. Choose a camera object in Scene properties.")
+    data = obj.data
+    if data.type not in {"PERSP", "ORTHO"}:
+        export.warn(f"Camera '{obj.name}': panoramic lenses are not supported; it is drawn in "
+                    "perspective.")
+    width, height = frame_size(render)
+    area = border(render, width, height)
+    item = capi.Camera()
+    item.projection = capi.ORTHOGRAPHIC if data.type == "ORTHO" else capi.PERSPECTIVE
+    item.world_from_camera[:] = columns(rigid(obj.matrix_world))
+    item.left, item.right, item.bottom, item.top = crop(
+        window(data, render, width, height), area, width, height)
+    item.near_clip, item.far_clip = data.clip_start, data.clip_end
+    export.scene.set_camera(item)
+    return area[2] - area[0], area[3] - area[1]

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images: by path where the library can read files itself, else as pixels.
+
+The library's image plug-in reads plain and packed files. Painted, generated and rendered images,
+and every image where the plug-in is missing, go over as Blender's pixels: 8-bit images as stored,
+float images scene-linear.
+"""
+
+import os
+
+import bpy
+import numpy as np
+
+from .. import compat
+from ..native import capi, loader
+from ..session import digest
+
+LINEAR_SPACES = {"Non-Color", "Raw", "Linear", "Linear Rec.709", "Linear BT.709", "scene_linear"}
+
+
+def file_path(image):
+    """Absolute path of an image's file; of tiled images the first tile's."""
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    return path.replace("<UDIM>", "1001").replace("<UVTILE>", "u1_v1")
+
+
+def is_srgb(image, warn):
+    """Whether 8-bit texels are sRGB-encoded."""
+    space = image.colorspace_settings.name
+    if space in LINEAR_SPACES:
+        return False
+    if space != "sRGB":
+        warn(f"Image '{image.name}': colour space '{space}' is not supported; it is read as sRGB.")
+    return True
+
+
+def pixels(image):
+    """(height, width, 4) of an image, row 0 at the bottom: uint8 as stored, or float32. None where
+    the image has no pixels (its file is missing)."""
+    width, height = image.size
+    if width == 0 or height == 0:
+        return None
+    values = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(values)
+    values = values.reshape(height, width, image.channels)
+    if image.channels != 4:
+        rgba = np.ones((height, width, 4), np.float32)
+        count = min(image.channels, 3)
+        rgba[..., :3] = values[..., :1] if count < 3 else values[..., :3]
+        values = rgba
+    if image.is_float:
+        return values
+    return np.rint(np.clip(values, 0.0, 1.0) * 255.0).astype(np.uint8)
+
+
+def _as_file(export, image, ident, options, extra):
+    """Hand over a path or the packed bytes; False where pixels must do."""
+    if image.is_dirty or image.source not in {"FILE", "SEQUENCE", "TILED"}:
+        return False
+    scene = export.scene
+    if image.packed_file:
+        if not loader.image_plugin_available():
+            return False
+        data = image.packed_file.data
+        export.put(capi.KIND_TEXTURE, ident, ("packed", digest(data), extra),
+                   lambda: scene.set_texture_memory(ident, data, options))
+        return True
+    path = file_path(image)
+    there = os.path.isfile(path)
+    if there and not loader.image_plugin_available():
+        return False
+    stat = os.stat(path) if there else None
+    state = (stat.st_mtime_ns, stat.st_size) if stat else None
+    export.put(capi.KIND_TEXTURE, ident, ("file", path, state, extra),
+               lambda: scene.set_texture_file(ident, path, options))
+    return True
+
+
+def _as_pixels(export, image, ident, options, extra):
+    values = pixels(image)
+    if values is None:  # the library draws it magenta and says so
+        path = file_path(image) or image.name
+        export.put(capi.KIND_TEXTURE, ident, ("file", path, None, extra),
+                   lambda: export.scene.set_texture_file(ident, path, options))
+        return
+    export.put(capi.KIND_TEXTURE, ident, ("pixels", digest(values), extra),
+               lambda: export.scene.set_texture_pixels(ident, values, options))
+
+
+def sync_texture(export, texture):
+    """Id of an image, sampled this way, in the core."""
+    image = texture.image.original if texture.image.is_evaluated else texture.image
+    srgb = is_srgb(image, export.warn)
+    extra = (srgb, texture.nearest, texture.extension)
+    key = f"{compat.datablock_key(image)}/{extra}"
+    if key not in export.textures:
+        if image.source in {"SEQUENCE", "MOVIE", "TILED"}:
+            export.warn(f"Image '{image.name}': {image.source.lower()} images are not supported; "
+                        "only its first picture is used.")
+        options = capi.TextureOptions(capi.encode(image.name), *extra)
+        ident = export.new_id(capi.KIND_TEXTURE, key)
+        if not _as_file(export, image, ident, options, extra):
+            _as_pixels(export, image, ident, options, extra)
+        export.textures[key] = ident
+    return export.textures[key]
+
+
+def mean_radiance(image):
+    """Mean of an equirectangular image over the sphere: rows weighted by their solid angle."""
+    values = pixels(image)
+    if values is None:
+        return 0.0, 0.0, 0.0
+    height, width = values.shape[:2]
+    step = max(1, min(height, width) // 512)  # half a degree is enough
+    rows = values[step // 2::step, step // 2::step, :3].astype(np.float64)
+    if values.dtype == np.uint8:
+        rows /= 255.0
+        if is_srgb(image, lambda _text: None):
+            rows = np.where(rows <= 0.04045, rows / 12.92, ((rows + 0.055) / 1.055) ** 2.4)
+    latitude = (np.arange(len(rows)) + 0.5) / len(rows) * np.pi
+    weights = np.sin(latitude)
+    return tuple(float(c) for c in
+                 (rows.mean(axis=1) * weights[:, None]).sum(axis=0) / weights.sum())

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated geometry as the core's meshes, one for all objects that share it."""
+
+import numpy as np
+
+from .. import compat
+from ..native import capi
+from ..session import digest
+
+# What has triangles once evaluated; metaballs of a family are all in its first object.
+GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+def triangulate(mesh):
+    """(corner, polygon) indices of every triangle: int32 (3T,) and (T,), or None and None where
+    each polygon is a triangle already."""
+    if 3 * len(mesh.polygons) == len(mesh.loops):
+        totals = np.empty(len(mesh.polygons), np.int32)
+        mesh.polygons.foreach_get("loop_total", totals)
+        if (totals == 3).all():
+            return None, None
+    mesh.calc_loop_triangles()
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    return corners, compat.triangle_polygons(mesh)
+
+
+def render_uv_layer(mesh):
+    """The UV map that rendering uses, or None."""
+    return next((layer for layer in mesh.uv_layers if layer.active_render), None)
+
+
+def arrays(mesh, slot_count):
+    """The arguments of capi.Scene.set_mesh after the name."""
+    positions = compat.vertex_positions(mesh)
+    corners, polygons = triangulate(mesh)
+
+    def per_corner(values):
+        if values is None:
+            return None
+        return np.ascontiguousarray(values if corners is None else values[corners])
+
+    triangles = per_corner(compat.corner_vertices(mesh)).astype(np.uint32).reshape(-1, 3)
+    layer = render_uv_layer(mesh)
+    uvs = per_corner(compat.corner_uvs(layer)) if layer else None
+    slots = compat.polygon_materials(mesh) if slot_count > 1 else None
+    if slots is not None:
+        slots = slots if polygons is None else slots[polygons]
+        slots = np.clip(slots, 0, slot_count - 1).astype(np.uint32)
+    return positions, triangles, per_corner(compat.corner_normals(mesh)), uvs, slots
+
+
+def _send(export, mesh, key, name, slot_count):
+    """Id of this mesh, or 0 where it has no faces."""
+    if len(mesh.polygons) == 0:
+        return 0
+    values = arrays(mesh, slot_count)
+    ident = export.new_id(capi.KIND_MESH, key)
+    export.put(capi.KIND_MESH, ident, digest(*values),
+               lambda: export.scene.set_mesh(ident, name, *values))
+    return ident
+
+
+def _identity(obj):
+    """What this object's geometry is shared by, within one evaluation."""
+    data = obj.data
+    if obj.type == "MESH":
+        return data.as_pointer(), len(data.vertices), len(data.loops)
+    return compat.datablock_key(obj.original)
+
+
+def sync_mesh(export, obj):
+    """Id of an evaluated object's geometry in the core, or 0 where there is none to draw."""
+    identity = _identity(obj)
+    if identity in export.meshes:
+        return export.meshes[identity]
+    original = obj.original
+    own = original.modifiers or obj.type != "MESH"
+    key = compat.datablock_key(original if own else obj.data)
+    slot_count = len(obj.material_slots)
+    if obj.type == "MESH" and not obj.data.is_editmode:
+        ident = _send(export, obj.data, key, obj.data.name_full, slot_count)
+    else:
+        mesh = obj.to_mesh()
+        ident = _send(export, mesh, key, original.name_full, slot_count) if mesh else 0
+        obj.to_mesh_clear()
+    export.meshes[identity] = ident
+    return ident

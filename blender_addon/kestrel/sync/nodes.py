@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reading node trees: what feeds a socket, as a constant colour times at most one image.
+
+Reroutes, muted nodes and groups are seen through. A node that cannot be followed is reported once,
+by material and node; then the first image found upstream stands in for it, else the socket's own
+value.
+"""
+
+from dataclasses import dataclass, replace
+
+from ..native import capi
+
+MAX_CHAIN = 256  # nodes between a socket and its source; longer ones are taken for cycles
+WHITE = (1.0, 1.0, 1.0)
+BLACK = (0.0, 0.0, 0.0)
+EXTENSIONS = {"REPEAT": capi.EXTENSION_REPEAT, "EXTEND": capi.EXTENSION_CLAMP,
+              "CLIP": capi.EXTENSION_CLIP}
+
+
+@dataclass(frozen=True)
+class Texture:
+    """An image as one node samples it; uv' = offset + uv * tiling."""
+    image: object
+    nearest: bool = False
+    extension: int = capi.EXTENSION_REPEAT
+    tiling: tuple = (1.0, 1.0)
+    offset: tuple = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Value:
+    """A colour times the texture's colour, or its alpha."""
+    color: tuple = BLACK
+    texture: Texture = None
+    from_alpha: bool = False
+
+    def scaled(self, factor):
+        """Times a number or a colour; black has no texture."""
+        factors = factor if isinstance(factor, tuple) else (factor,) * 3
+        color = tuple(c * f for c, f in zip(self.color, factors))
+        return replace(self, color=color, texture=self.texture if any(color) else None)
+
+    @property
+    def luminance(self):
+        return 0.2126 * self.color[0] + 0.7152 * self.color[1] + 0.0722 * self.color[2]
+
+
+def constant(value):
+    """A socket's own value as a colour; numbers become grey."""
+    if hasattr(value, "__len__"):
+        return tuple(float(channel) for channel in value[:3])
+    return (float(value),) * 3
+
+
+def output_node(tree, kind):
+    """The active output of this type; Cycles' is preferred to one for everyone."""
+    nodes = [node for node in tree.nodes if node.type == kind and node.is_active_output]
+    nodes = nodes or [node for node in tree.nodes if node.type == kind]
+    rank = {"CYCLES": 0, "ALL": 1}
+    return min(nodes, key=lambda node: rank.get(getattr(node, "target", "ALL"), 2), default=None)
+
+
+def by_identifier(sockets, socket):
+    return next((s for s in sockets if s.identifier == socket.identifier), None)
+
+
+class Reader:
+    """Follows the links of one datablock's node tree. `owner` names it in messages."""
+
+    def __init__(self, owner, warn):
+        self.owner = owner
+        self._warn = warn
+
+    def unsupported(self, node, instead):
+        label = node.label or node.name
+        self._warn(f"{self.owner}: node '{label}' ({node.bl_label}) is not supported; {instead}.")
+
+    def source(self, socket, stack=()):
+        """(node, its output, group stack) that feeds an input, or (None, socket, stack) where an
+        own value does: `socket` is then the one that holds it."""
+        for _ in range(MAX_CHAIN):
+            link = next((l for l in socket.links if l.is_valid and not l.is_muted), None)
+            if link is None:
+                return None, socket, stack
+            node, output = link.from_node, link.from_socket
+            if node.type == "REROUTE":
+                socket = node.inputs[0]
+            elif node.mute:
+                inner = next((l for l in node.internal_links if l.to_socket == output), None)
+                if inner is None:
+                    return None, socket, stack
+                socket = inner.from_socket
+            elif node.type == "GROUP" and node.node_tree is not None:
+                result = output_node(node.node_tree, "GROUP_OUTPUT")
+                inside = by_identifier(result.inputs, output) if result else None
+                if inside is None:
+                    return None, socket, stack
+                socket, stack = inside, stack + (node,)
+            elif node.type == "GROUP_INPUT" and stack:
+                outside = by_identifier(stack[-1].inputs, output)
+                if outside is None:
+                    return None, socket, stack
+                socket, stack = outside, stack[:-1]
+            else:
+                return node, output, stack
+        self._warn(f"{self.owner}: the node links form a cycle; socket '{socket.name}' keeps its "
+                   "own value.")
+        return None, socket, stack
+
+    def first_image(self, node, stack, depth=0):
+        """The first image texture upstream of a node, or None."""
+        if depth > MAX_CHAIN:
+            return None
+        if node.type == "TEX_IMAGE" and node.image is not None:
+            return self.texture(node, stack)
+        for socket in node.inputs:
+            above, _, above_stack = self.source(socket, stack)
+            found = above and self.first_image(above, above_stack, depth + 1)
+            if found:
+                return found
+        return None
+
+    # ---- values ----
+
+    def number(self, socket, stack=()):
+        """A number: a Value node or the socket's own; anything else is reported."""
+        node, origin, _ = self.source(socket, stack)
+        if node is None:
+            return sum(constant(origin.default_value)) / 3.0
+        if node.type in ("VALUE", "RGB"):
+            return sum(constant(node.outputs[0].default_value)) / 3.0
+        own = sum(constant(socket.default_value)) / 3.0
+        self.unsupported(node, f"'{socket.name}' is {own:.3g} everywhere")
+        return own
+
+    def color(self, socket, stack=()):
+        """A Value for a colour (or grey) input."""
+        node, origin, above = self.source(socket, stack)
+        if node is None:
+            return Value(constant(origin.default_value))
+        if node.type in ("RGB", "VALUE"):
+            return Value(constant(node.outputs[0].default_value))
+        if node.type == "TEX_IMAGE":
+            if node.image is None:
+                return Value(BLACK)
+            return Value(WHITE, self.texture(node, above), origin.name == "Alpha")
+        if node.type in ("MIX_RGB", "MIX"):
+            mixed = self._mixed_color(node, above)
+            if mixed is not None:
+                return mixed
+        return self._stand_in(socket, node, above)
+
+    def _stand_in(self, socket, node, stack):
+        texture = self.first_image(node, stack)
+        if texture is not None:
+            self.unsupported(node, f"the image '{texture.image.name}' is used as it is")
+            return Value(WHITE, texture)
+        own = constant(socket.default_value)
+        self.unsupported(node, "the colour ({:.3g}, {:.3g}, {:.3g}) is used instead".format(*own))
+        return Value(own)
+
+    def _mixed_color(self, node, stack):
+        """Mix and Multiply where the result is one colour times one image, else None."""
+        if node.type == "MIX" and node.data_type != "RGBA":
+            return None
+        enabled = [socket for socket in node.inputs if socket.enabled]
+        if len(enabled) != 3 or node.blend_type not in ("MIX", "MULTIPLY"):
+            return None
+        factor_node, factor_socket, _ = self.source(enabled[0], stack)
+        if factor_node is not None and factor_node.type != "VALUE":
+            return None
+        holder = factor_socket if factor_node is None else factor_node.outputs[0]
+        factor = min(max(constant(holder.default_value)[0], 0.0), 1.0)
+        a, b = (self.color(socket, stack) for socket in enabled[1:])
+        if node.blend_type == "MIX":
+            return sum_values(a.scaled(1.0 - factor), b.scaled(factor))
+        if b.texture is None:
+            return a.scaled(tuple(1.0 - factor + factor * c for c in b.color))
+        if factor == 1.0 and a.texture is None:
+            return b.scaled(a.color)
+        return None
+
+    # ---- images ----
+
+    def texture(self, node, stack):
+        """How an Image Texture node samples its image."""
+        if node.projection != "FLAT":
+            self.unsupported(node, "its image is projected flat by the UV map")
+        extension = EXTENSIONS.get(node.extension)
+        if extension is None:
+            self.unsupported(node, "its image repeats instead of being mirrored")
+            extension = capi.EXTENSION_REPEAT
+        tiling, offset = self._mapping(node.inputs["Vector"], stack)
+        return Texture(node.image, node.interpolation == "Closest", extension, tiling, offset)
+
+    def _mapping(self, socket, stack):
+        """Tiling and offset of the UV map that a vector input describes."""
+        node, origin, above = self.source(socket, stack)
+        if node is None:
+            return (1.0, 1.0), (0.0, 0.0)
+        if node.type == "MAPPING":
+            return self._mapping_node(node, above)
+        if node.type == "TEX_COORD" and origin.name == "UV":
+            return (1.0, 1.0), (0.0, 0.0)
+        if node.type == "UVMAP" and not node.from_instancer:
+            return (1.0, 1.0), (0.0, 0.0)
+        self.unsupported(node, "the UV map is used instead")
+        return (1.0, 1.0), (0.0, 0.0)
+
+    def _mapping_node(self, node, stack):
+        tiling, offset = self._mapping(node.inputs["Vector"], stack)
+        scale = [self._vector(node, "Scale", stack)[i] for i in range(2)]
+        place = [0.0, 0.0]
+        if node.vector_type in ("POINT", "TEXTURE"):
+            place = [self._vector(node, "Location", stack)[i] for i in range(2)]
+        if any(abs(angle) > 1e-6 for angle in self._vector(node, "Rotation", stack)):
+            self.unsupported(node, "its rotation is left out")
+        if node.vector_type == "TEXTURE":  # the inverse: (uv - location) / scale
+            scale = [1.0 / s if s else 0.0 for s in scale]
+            place = [-p * s for p, s in zip(place, scale)]
+        return (tuple(t * s for t, s in zip(tiling, scale)),
+                tuple(o * s + p for o, s, p in zip(offset, scale, place)))
+
+    def _vector(self, node, name, stack):
+        socket = node.inputs.get(name)
+        if socket is None:  # the socket is hidden for this kind of vector
+            return (1.0, 1.0, 1.0) if name == "Scale" else BLACK
+        above, origin, _ = self.source(socket, stack)
+        if above is not None:
+            self.unsupported(above, f"'{name}' of '{node.name}' keeps its own value")
+            origin = socket
+        return constant(origin.default_value)
+
+
+def sum_values(a, b):
+    """a + b. Exact unless both have different textures: then the brighter one's is kept and the
+    other joins as a constant of mean grey (half)."""
+    if a.texture == b.texture and a.from_alpha == b.from_alpha:
+        return Value(tuple(x + y for x, y in zip(a.color, b.color)), a.texture, a.from_alpha)
+    if not any(a.color):
+        return b
+    if not any(b.color):
+        return a
+    main, other = (a, b) if a.texture and (not b.texture or a.luminance >= b.luminance) else (b, a)
+    weight = 0.5 if other.texture else 1.0
+    return replace(main, color=tuple(x + weight * y for x, y in zip(main.color, other.color)))

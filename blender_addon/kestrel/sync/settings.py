@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings: the parameter table's rows, from the properties of that name."""
+
+from ..native import loader
+
+
+def as_text(row, value):
+    """A property's value in the table's notation."""
+    if row["type"] == "bool":
+        return "true" if value else "false"
+    if row["type"] == "color":
+        return " ".join(f"{channel:.9g}" for channel in value)
+    if row["type"] == "float":
+        return f"{value:.9g}"
+    return str(value)
+
+
+def rows(scope):
+    return [row for row in loader.parameter_table() if row["scope"] == scope]
+
+
+def sync_settings(export, scene, world_ambient):
+    """Send a scene's settings. The world's ambient light joins the artist's own, and Blender's
+    fixed thread count holds where Kestrel's is left automatic."""
+    values = {row["name"]: getattr(scene.kestrel, row["name"]) for row in rows("scene")}
+    values["ambient"] = [own + world for own, world in zip(values["ambient"], world_ambient)]
+    if values["threads"] == 0 and scene.render.threads_mode == "FIXED":
+        values["threads"] = scene.render.threads
+    for row in rows("scene"):
+        export.scene.set_setting(row["name"], as_text(row, values[row["name"]]))
