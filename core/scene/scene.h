@@ -18,7 +18,7 @@ inline constexpr int kNone = -1;
 /// Triangles in object space. Arrays of corners hold three entries per triangle, in its order.
 struct Mesh {
   std::string name;
-  std::vector<vec3> positions;               // per vertex
+  std::vector<vec3> positions;               // per vertex; 4 bytes past the last are readable
   std::vector<uvec3> triangles;              // vertex indices
   std::vector<vec3> corner_normals;          // unit; empty: flat faces
   std::vector<vec2> corner_uvs;              // empty: (0, 0)
@@ -100,7 +100,7 @@ struct Object {
   std::string name;
   int mesh = kNone;
   int unit = kNone;
-  std::vector<int> materials;  // by slot, never empty
+  std::vector<int> materials;  // by slot; holds every slot that the mesh uses
   mat4x3 world_from_object{1.0f};
   bool flips_orientation = false;  // negative determinant
 };
