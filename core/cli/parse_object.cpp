@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Objects: placed meshes, their instances, and whole models.
+#include <algorithm>
+
+#include "cli/parse.h"
+
+namespace kestrel::cli {
+namespace {
+
+constexpr size_t kMaximumSlots = 65536;
+
+/// Whether `text` fits `pattern`, in which * stands for any run of characters.
+bool matches(std::string_view pattern, std::string_view text) {
+  size_t p = 0, t = 0, star = std::string_view::npos, restart = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      restart = t;
+    } else if (p < pattern.size() && pattern[p] == text[t]) {
+      ++p;
+      ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++restart;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+mat4x3 combined(const mat4x3& outer, const mat4x3& inner) {
+  return mat4x3(mat4(outer) * mat4(inner));
+}
+
+/// [x, y, z], [x, y, z, degrees about Z], [x, y, z, degrees, scale] or a matrix of 12.
+mat4x3 parse_instance(const JsonNode& node) {
+  const std::vector<float> v = node.numbers(3, 12, -kMaximumLength, kMaximumLength);
+  if (v.size() == 12) return parse_matrix(node);
+  if (v.size() > 5) node.fail("expected 3, 4, 5 or 12 numbers, found {}", v.size());
+  const mat3 r = rotation_from_degrees({0.0f, 0.0f, v.size() > 3 ? v[3] : 0.0f}) *
+                 (v.size() > 4 ? v[4] : 1.0f);
+  return mat4x3(r[0], r[1], r[2], vec3(v[0], v[1], v[2]));
+}
+
+/// Where the element stands: once, or at each of its instances.
+std::vector<mat4x3> parse_placements(const JsonNode& node) {
+  const mat4x3 placement = parse_transform(node);
+  const auto instances = node.find("instances");
+  if (!instances) return {placement};
+  std::vector<mat4x3> placements;
+  for (const JsonNode& item : instances->items(kMaximumItems)) {
+    placements.push_back(combined(parse_instance(item), placement));
+  }
+  if (placements.empty()) instances->fail("expected at least one instance");
+  return placements;
+}
+
+std::vector<std::string> object_keys(const std::vector<std::string>& own) {
+  std::vector<std::string> keys = {"name", "unit", "instances"};
+  for (const auto& more : {own, transform_keys(), setting_names("object")}) {
+    keys.insert(keys.end(), more.begin(), more.end());
+  }
+  return keys;
+}
+
+void expect_room(const JsonNode& node, size_t more, const SceneDescription& scene) {
+  if (scene.objects.size() + more > kMaximumItems) {
+    node.fail("the scene would have more than {} objects", kMaximumItems);
+  }
+}
+
+// ---- imported models ---------------------------------------------------------------------------
+
+/// "units": which nodes are selected together, by their material's or their own name.
+struct UnitRule {
+  std::string unit;
+  std::vector<std::string> patterns;  // empty: whatever is left
+};
+
+/// "replace": materials of the scene instead of the model's.
+struct Replacement {
+  std::string pattern;
+  int material;
+};
+
+std::vector<UnitRule> parse_unit_rules(const JsonNode& node) {
+  std::vector<UnitRule> rules;
+  const auto units = node.find("units");
+  if (!units) return rules;
+  for (const JsonNode& item : units->items(10'000)) {
+    item.expect_keys({"unit", "match"});
+    UnitRule rule{item.require("unit").text(), {}};
+    if (const auto match = item.find("match")) {
+      for (const JsonNode& pattern : match->items(10'000)) rule.patterns.push_back(pattern.text());
+    }
+    rules.push_back(std::move(rule));
+  }
+  return rules;
+}
+
+std::vector<Replacement> parse_replacements(const JsonNode& node, const Model& model,
+                                            const Names& materials) {
+  std::vector<Replacement> out;
+  const auto replace = node.find("replace");
+  if (!replace) return out;
+  std::vector<std::string> known;
+  for (const MaterialDescription& m : model.materials) known.push_back(m.name);
+  for (const JsonNode& item : replace->items(10'000)) {
+    item.expect_keys({"material", "with"});
+    const JsonNode pattern = item.require("material");
+    Replacement r{pattern.text(), materials.find(item.require("with"))};
+    if (std::none_of(known.begin(), known.end(),
+                     [&](const std::string& name) { return matches(r.pattern, name); })) {
+      pattern.fail("the model has no material '{}'{}", r.pattern, did_you_mean(r.pattern, known));
+    }
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
+/// Makes the model's meshes, textures and materials the scene's, once.
+void add_model(ModelCache::Entry& entry, SceneDescription& scene) {
+  if (entry.imported) return;
+  entry.imported = true;
+  entry.first_mesh = static_cast<int>(scene.meshes.size());
+  entry.first_material = static_cast<int>(scene.materials.size());
+  entry.first_texture = static_cast<int>(scene.textures.size());
+  const Model& model = entry.model;
+  scene.meshes.insert(scene.meshes.end(), model.meshes.begin(), model.meshes.end());
+  scene.textures.insert(scene.textures.end(), model.textures.begin(), model.textures.end());
+  for (MaterialDescription material : model.materials) {
+    KestrelMaterial& m = material.values;
+    for (uint64_t* id : {&m.emission_texture, &m.ambient_texture, &m.diffuse_texture,
+                         &m.specular_texture, &m.normal_texture, &m.optical_texture}) {
+      if (*id) *id += static_cast<uint64_t>(entry.first_texture);
+    }
+    scene.materials.push_back(std::move(material));
+  }
+}
+
+std::string unit_of(const ModelNode& node, const std::string& material,
+                    const std::vector<UnitRule>& rules, const std::string& fallback) {
+  for (const UnitRule& rule : rules) {
+    const bool fits = rule.patterns.empty() ||
+                      std::any_of(rule.patterns.begin(), rule.patterns.end(), [&](const auto& p) {
+                        return matches(p, material) || matches(p, node.name);
+                      });
+    if (fits) return rule.unit;
+  }
+  return fallback;
+}
+
+void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& context) {
+  node.expect_keys(object_keys({"import", "up", "units", "replace"}));
+  const std::vector<mat4x3> placements = parse_placements(node);
+  const std::vector<UnitRule> rules = parse_unit_rules(node);
+  const auto settings = parse_settings(node, "object");
+  const auto name = node.find("name");
+  const auto unit = node.find("unit");
+  const std::string unit_name = unit ? unit->text() : name ? name->text() : "";
+  ModelCache::Entry& entry = context.models.read(file, parse_up(node));
+  const auto replacements = parse_replacements(node, entry.model, context.materials);
+  SceneDescription& scene = context.scene;
+  expect_room(node, placements.size() * entry.model.nodes.size(), scene);
+  add_model(entry, scene);
+  for (const mat4x3& placement : placements) {
+    for (const ModelNode& part : entry.model.nodes) {
+      const int material = entry.model.mesh_materials[part.mesh];
+      const std::string& material_name = entry.model.materials.at(material).name;
+      ObjectDescription object;
+      object.name = part.name.empty() ? unit_name : part.name;
+      object.unit = unit_of(part, material_name, rules, unit_name.empty() ? part.name : unit_name);
+      object.mesh = entry.first_mesh + part.mesh;
+      object.materials = {entry.first_material + material};
+      for (const Replacement& r : replacements) {
+        if (!matches(r.pattern, material_name)) continue;
+        object.materials[0] = r.material;
+        break;
+      }
+      object.world_from_object = combined(placement, part.model_from_mesh);
+      object.settings = settings;
+      scene.objects.push_back(std::move(object));
+    }
+  }
+}
+
+// ---- placed meshes -----------------------------------------------------------------------------
+
+std::vector<int> parse_slots(const JsonNode& node, const Names& materials) {
+  const auto one = node.find("material");
+  const auto many = node.find("materials");
+  if (one && many) node.fail("has both 'material' and 'materials'; use one of them");
+  if (one) return {materials.find(*one)};
+  std::vector<int> slots;
+  if (!many) return slots;
+  for (const JsonNode& item : many->items(kMaximumSlots)) {
+    slots.push_back(item.value().is_null() ? kNoIndex : materials.find(item));
+  }
+  return slots;
+}
+
+}  // namespace
+
+void parse_object(const JsonNode& node, size_t index, ParseContext& context) {
+  if (!node.value().is_object()) node.expect_keys({});
+  const auto file = node.find("import");
+  if (file) {
+    parse_import(node, *file, context);
+    return;
+  }
+  node.expect_keys(object_keys({"mesh", "material", "materials"}));
+  ObjectDescription object;
+  object.mesh = context.meshes.find(node.require("mesh"));
+  const auto name = node.find("name");
+  const auto unit = node.find("unit");
+  object.name = name ? name->text() : fmt::format("Object {}", index);
+  if (unit) object.unit = unit->text();
+  object.materials = parse_slots(node, context.materials);
+  object.settings = parse_settings(node, "object");
+  const std::vector<mat4x3> placements = parse_placements(node);
+  expect_room(node, placements.size(), context.scene);
+  for (const mat4x3& placement : placements) {
+    object.world_from_object = placement;
+    context.scene.objects.push_back(object);
+  }
+}
+
+}  // namespace kestrel::cli
