@@ -7,8 +7,8 @@ Opens the scene data's `backyard/backyard.blend` and adds a mirror ball and two 
 follow the paper's Table 4: 48 objects (each tree's trunk and leaves joined: 12; each kind of grass,
 flower, clover and bush joined: 17; 10 hedges; house, roof, windows, ground, terrace, water; the
 three balls), 1 reflective, 2 refractive, 1.13 M triangles. `--instances` keeps the file's own
-1,473 objects that share 32 meshes. Leaves stacked deeply need 64 transparent bounces in Cycles
-(set). Leaves with status 2 where the file is missing. Writes FILE.blend.
+1,471 mesh objects, which share 32 meshes. Stacked foliage needs 64 transparent bounces in Cycles
+(set). Exits with status 2 where the file is missing. Writes FILE.blend.
 """
 
 import os
@@ -17,6 +17,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bpy
 import common
+import shading
 
 SCENE_FILE = "backyard/backyard.blend"
 SUN_ENERGY = 9.0  # W/m2
@@ -61,11 +62,11 @@ def join_plants():
 
 
 def add_balls():
-    common.add_sphere("GazingBall", (-2.6, -7.4, 0.75), 0.75, common.mirror("Mirror"), 64, 32)
+    common.add_sphere("GazingBall", (-2.6, -7.4, 0.75), 0.75, shading.mirror("Mirror"), 64, 32)
     common.add_sphere("GlassBall1", (-4.9, -9.2, 0.55), 0.5,
-                      common.glass("Glass1", ior=1.5), 64, 32)
+                      shading.glass("Glass1", ior=1.5), 64, 32)
     common.add_sphere("GlassBall2", (-1.2, -9.6, 0.45), 0.4,
-                      common.glass("Glass2", (0.75, 0.93, 1.0), 1.33), 64, 32)
+                      shading.glass("Glass2", (0.75, 0.93, 1.0), 1.33), 64, 32)
 
 
 def paint():
@@ -86,7 +87,7 @@ def set_sky():
 def main():
     args = common.parse_args(__doc__, add_arguments)
     open_file(common.require_data(SCENE_FILE))
-    common.make_all_matte()
+    shading.make_all_matte()
     paint()
     if not args.instances:
         join_plants()

@@ -8,7 +8,7 @@ joined), none reflective, 1 refractive (the pitcher is glass), 139 k triangles: 
 1,000 triangles are collapsed by one common ratio. `--full` keeps all 269,538. Two light sources as
 in the paper's figure 9: a hard sun through the blinds and a point light above the table. Plastics
 and metals become matte, so that one object alone refracts. Needs the scene data's `dining_room`
-folder (leaves with status 2 without it). Writes FILE.blend.
+folder (exits with status 2 without it). Writes FILE.blend.
 """
 
 import math
@@ -20,6 +20,7 @@ from pathlib import Path
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bpy
 import common
+import shading
 from mathutils import Matrix
 
 SCENE_FILE = "dining_room/scene.xml"
@@ -72,7 +73,7 @@ def parse_bsdf(element, folder):
         rgb = named(element, "rgb", key)
         if rgb is not None:
             color = tuple(0.85 * float(word) for word in rgb.get("value").split(","))
-    return common.principled(name, color, image=image)
+    return shading.principled(name, color, image=image)
 
 
 def import_obj(path):
@@ -134,7 +135,7 @@ def main():
     path = common.require_data(SCENE_FILE)
     common.clear_scene()
     root, parts = import_scene(path)
-    parts[GLASS_PART].data.materials[0] = common.glass("PitcherGlass", (0.92, 0.97, 1.0), 1.5)
+    parts[GLASS_PART].data.materials[0] = shading.glass("PitcherGlass", (0.92, 0.97, 1.0), 1.5)
     join_parts(parts)
     if not args.full:
         collapse()

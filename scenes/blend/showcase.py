@@ -15,6 +15,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import common
+import shading
 
 FLOOR_SIZE = 16.0  # metres
 SQUARES = 16
@@ -30,7 +31,7 @@ def checker_image():
         if inside < 0.03:
             return (0.30, 0.29, 0.28, 1.0)
         return (0.86, 0.83, 0.76, 1.0) if (column + row) % 2 else (0.28, 0.34, 0.40, 1.0)
-    return common.image_from_function("Checker", 512, 512, texel)
+    return shading.image_from_function("Checker", 512, 512, texel)
 
 
 def crate_image():
@@ -43,7 +44,7 @@ def crate_image():
         gap = not frame and (v * 5) % 1 < 0.06
         tone = (0.62 if frame else 0.48) + 0.10 * grain - (0.35 if gap else 0.0)
         return (tone * 1.15, tone * 0.82, tone * 0.48, 1.0)
-    return common.image_from_function("Crate", 256, 256, texel)
+    return shading.image_from_function("Crate", 256, 256, texel)
 
 
 def brick_normal_image():
@@ -58,7 +59,7 @@ def brick_normal_image():
         ny = slope(v * 12 % 1, 0.16)
         length = math.sqrt(nx * nx + ny * ny + 1.0)
         return (0.5 + 0.5 * nx / length, 0.5 + 0.5 * ny / length, 0.5 + 0.5 / length, 1.0)
-    return common.image_from_function("BrickNormals", 512, 512, texel, non_color=True)
+    return shading.image_from_function("BrickNormals", 512, 512, texel, non_color=True)
 
 
 def leaf_image():
@@ -70,18 +71,18 @@ def leaf_image():
         vein = abs(x) < 0.015 or abs((y * 7 + abs(x) * 5) % 1) < 0.10
         green = 0.72 if vein else 0.52
         return (0.30 if vein else 0.20, green, 0.16, 1.0 if inside else 0.0)
-    return common.image_from_function("Leaves", 256, 256, texel)
+    return shading.image_from_function("Leaves", 256, 256, texel)
 
 
 # ---- objects ---------------------------------------------------------------------------------
 
 def add_stage():
     common.add_plane("Floor", (0, 0, 0), (FLOOR_SIZE, FLOOR_SIZE),
-                     common.principled("Floor", image=checker_image()))
+                     shading.principled("Floor", image=checker_image()))
     common.add_box("BackWall", (0, 5.2, 2.6), (16.0, 0.3, 5.2),
-                   common.diffuse("Wall", (0.34, 0.28, 0.27)))
+                   shading.diffuse("Wall", (0.34, 0.28, 0.27)))
     for index, x in enumerate((-4.6, 4.6)):
-        pillar = common.add_grid(f"Pillar{index + 1}", pillar_point, 64, 32, common.principled(
+        pillar = common.add_grid(f"Pillar{index + 1}", pillar_point, 64, 32, shading.principled(
             f"Pillar{index + 1}", (0.70, 0.42, 0.30), normal_image=brick_normal_image()))
         pillar.location = (x, 3.4, 0.0)
 
@@ -92,13 +93,13 @@ def pillar_point(u, v):
 
 
 def add_balls():
-    common.add_sphere("MirrorBall", (-1.75, 0.9, 1.15), 1.15, common.mirror("Silver"), 128, 64)
+    common.add_sphere("MirrorBall", (-1.75, 0.9, 1.15), 1.15, shading.mirror("Silver"), 128, 64)
     common.add_sphere("GlassBall", (1.05, -0.9, 0.85), 0.85,
-                      common.glass("Glass", ior=1.45), 128, 64)
+                      shading.glass("Glass", ior=1.45), 128, 64)
     common.add_sphere("AmberBall", (-0.55, -1.75, 0.38), 0.38,
-                      common.glass("Amber", (1.0, 0.66, 0.28), 1.5), 96, 48)
+                      shading.glass("Amber", (1.0, 0.66, 0.28), 1.5), 96, 48)
     common.add_sphere("GoldBall", (3.3, 0.2, 0.55), 0.55,
-                      common.mirror("Gold", (1.0, 0.76, 0.36)), 96, 48)
+                      shading.mirror("Gold", (1.0, 0.76, 0.36)), 96, 48)
 
 
 def add_boxes():
@@ -109,16 +110,16 @@ def add_boxes():
               "Blue": ((1.9, 2.2, 1.0), (0.8, 0.8, 2.0), -20),
               "Yellow": ((-2.5, -1.7, 0.25), (0.5, 0.5, 0.5), 40)}
     for name, (location, size, turn) in places.items():
-        common.add_box(f"{name}Box", location, size, common.diffuse(name, colors[name]), turn)
+        common.add_box(f"{name}Box", location, size, shading.diffuse(name, colors[name]), turn)
     common.add_box("Crate", (3.25, 1.9, 0.6), (1.2, 1.2, 1.2),
-                   common.principled("Crate", image=crate_image()), 30)
+                   shading.principled("Crate", image=crate_image()), 30)
     common.add_box("GlassCube", (2.45, -1.95, 0.35), (0.7, 0.7, 0.7),
-                   common.glass("AquaGlass", (0.70, 0.95, 0.96), 1.33), 35)
+                   shading.glass("AquaGlass", (0.70, 0.95, 0.96), 1.33), 35)
 
 
 def add_leaf_screen():
     """Upright card of leaves that throws a cut-out shadow."""
-    screen = common.add_plane("LeafScreen", (-3.3, 2.6, 1.3), (1.8, 2.2), common.principled(
+    screen = common.add_plane("LeafScreen", (-3.3, 2.6, 1.3), (1.8, 2.2), shading.principled(
         "Leaves", image=leaf_image(), alpha=True))
     screen.rotation_euler = (math.radians(90), 0, math.radians(18))
 

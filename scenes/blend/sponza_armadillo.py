@@ -6,9 +6,10 @@
 Counts follow the paper's Table 4: 25 objects (Sponza joined into 3, a pedestal, the armadillo and
 20 glass spheres), none reflective, 21 refractive. Table 4's 292,544 triangles are read as those of
 the whole scene: 262,087 of Sponza, 12 of the pedestal, 20 spheres of 360, and the armadillo
-collapsed to the 23,245 that remain. `--full` keeps the armadillo's own 292,544 triangles (561,843 in all). Needs the
-scene data's `sponza` and `stanford` folders; a stand-in hall and a lumpy ball replace what is
-missing, and a line on stdout says so. Writes FILE.blend.
+collapsed to the 23,245 that remain. `--full` keeps the armadillo's own
+292,544 triangles (561,843 in all). Needs the scene data's `sponza` and `stanford` folders; a
+stand-in hall and a lumpy ball replace what is missing, and a line on stdout says so. Writes
+FILE.blend.
 """
 
 import math
@@ -19,6 +20,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bpy
 import common
+import shading
 import sponza_hall
 from sponza_hall import FLOOR_Z, NAVE_Y
 
@@ -78,7 +80,7 @@ def add_statue(full):
     statue = import_armadillo(path) if path else lumpy_ball()
     place_statue(statue)
     statue.data.materials.clear()
-    statue.data.materials.append(common.glass("ArmadilloGlass", (0.86, 0.96, 0.90), 1.5))
+    statue.data.materials.append(shading.glass("ArmadilloGlass", (0.86, 0.96, 0.90), 1.5))
     others = [obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj != statue]
     if not full:
         common.decimate([statue], SCENE_TRIANGLES - sum(map(common.count_triangles, others)))
@@ -95,7 +97,7 @@ def add_spheres():
         height = radius if index % 3 else draw.uniform(1.2, 2.8)
         y = NAVE_Y + side * draw.uniform(1.35, 2.1)
         name = f"Glass{index + 1:02}"
-        material = common.glass(name, TINTS[index % len(TINTS)], round(draw.uniform(1.3, 1.6), 2))
+        material = shading.glass(name, TINTS[index % len(TINTS)], round(draw.uniform(1.3, 1.6), 2))
         common.add_sphere(name, (x, y, FLOOR_Z + height), radius, material, 20, 10)
 
 
@@ -104,7 +106,7 @@ def main():
     common.clear_scene()
     sponza_hall.build_hall()
     common.add_box("Pedestal", (STATUE_X, NAVE_Y, FLOOR_Z + PEDESTAL_HEIGHT / 2),
-                   (1.6, 1.6, PEDESTAL_HEIGHT), common.diffuse("Marble", (0.62, 0.60, 0.57)))
+                   (1.6, 1.6, PEDESTAL_HEIGHT), shading.diffuse("Marble", (0.62, 0.60, 0.57)))
     add_spheres()
     add_statue(args.full)
     sponza_hall.add_hall_lights()

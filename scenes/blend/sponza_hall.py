@@ -12,6 +12,7 @@ import math
 import bpy
 
 import common
+import shading
 
 FLOOR_Z = 4.0
 NAVE_Y = 0.75
@@ -34,10 +35,10 @@ def import_gltf(path):
     import numpy
     if "bool" not in vars(numpy):
         numpy.bool = bool  # Blender 3.4's importer on a newer numpy
-    bpy.ops.import_scene.gltf(filepath=str(path))
+    bpy.ops.import_scene.gltf(filepath=str(path), import_pack_images=False)
     scene = bpy.context.scene
     bpy.data.batch_remove([obj for obj in scene.objects if obj.type != "MESH"])
-    common.make_all_matte()
+    shading.make_all_matte()
     groups = {"Hall": [], "Cloth": [], "Details": []}
     for obj in scene.objects:
         material = obj.data.materials[0].name
@@ -52,8 +53,8 @@ def import_gltf(path):
 
 def build_stand_in():
     """A colonnade of the same size, open to the sky over the nave: 261,808 triangles."""
-    stone = common.diffuse("Stone", (0.55, 0.48, 0.40))
-    tiles = common.diffuse("Tiles", image=checker_image())
+    stone = shading.diffuse("Stone", (0.55, 0.48, 0.40))
+    tiles = shading.diffuse("Tiles", image=checker_image())
     shell = [
         common.add_grid("Floor", lambda u, v: (-22 + 42 * u, -9 + 19.5 * v, FLOOR_Z),
                         128, 64, tiles, smooth=False),
@@ -82,7 +83,7 @@ def checker_image():
     def texel(u, v):
         light = (int(u * 84) + int(v * 39)) % 2
         return (0.72, 0.66, 0.56, 1.0) if light else (0.45, 0.38, 0.33, 1.0)
-    return common.image_from_function("Tiles", 336, 156, texel)
+    return shading.image_from_function("Tiles", 336, 156, texel)
 
 
 def column(x, y, material):
@@ -104,7 +105,7 @@ def drape(index):
     def point(u, v):
         fold = 0.12 * math.sin(2 * math.pi * 7 * u + index) * (1.0 - 0.5 * v)
         return (x - 1.1 + 2.2 * u, NAVE_Y + side * 3.9 + fold, FLOOR_Z + 2.2 + 3.3 * v)
-    return common.add_grid("Drape", point, 80, 40, common.diffuse(f"Drape{index}", color))
+    return common.add_grid("Drape", point, 80, 40, shading.diffuse(f"Drape{index}", color))
 
 
 # ---- light -----------------------------------------------------------------------------------

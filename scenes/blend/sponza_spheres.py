@@ -15,6 +15,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import common
+import shading
 import sponza_hall
 from sponza_hall import FLOOR_Z, NAVE_Y
 
@@ -45,11 +46,11 @@ def add_spheres(fine):
     spheres = [(*place, True) for place in MIRRORS] + [(*place, False) for place in GLASSES]
     by_size = sorted(spheres, key=lambda sphere: -sphere[3])
     medium = {sphere[:3] for sphere in by_size[:17]}
-    silver = common.mirror("Mirror")
+    silver = shading.mirror("Mirror")
     for index, (x, y, z, radius, is_mirror) in enumerate(spheres):
         segments, rings = FINE if fine else MEDIUM if (x, y, z) in medium else COARSE
         name = f"Mirror{index + 1}" if is_mirror else f"Glass{index - len(MIRRORS) + 1:02}"
-        material = silver if is_mirror else common.glass(
+        material = silver if is_mirror else shading.glass(
             name, TINTS[index % len(TINTS)], round(draw.uniform(1.3, 1.6), 2))
         common.add_sphere(name, (x, NAVE_Y + y, FLOOR_Z + z), radius, material, segments, rings)
 

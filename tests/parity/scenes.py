@@ -15,6 +15,7 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scenes" / "blend"))
 import common
+import shading
 
 SIZE_PX = (400, 225)
 BALL = (256, 128)  # segments, rings
@@ -33,21 +34,21 @@ def checker_floor(size=10.0, squares=10):
     """Chequered floor of two matte materials (no image), one quad a square."""
     floor = common.add_grid("Floor", lambda u, v: ((u - 0.5) * size, (v - 0.5) * size, 0.0),
                             squares, squares, None, smooth=False)
-    floor.data.materials.append(common.diffuse("Light", (0.75, 0.72, 0.66)))
-    floor.data.materials.append(common.diffuse("Dark", (0.22, 0.26, 0.32)))
+    floor.data.materials.append(shading.diffuse("Light", (0.75, 0.72, 0.66)))
+    floor.data.materials.append(shading.diffuse("Dark", (0.22, 0.26, 0.32)))
     for polygon in floor.data.polygons:
         polygon.material_index = (polygon.index // squares + polygon.index) % 2
     return floor
 
 
 def plain_floor(size=10.0):
-    return common.add_plane("Floor", (0, 0, 0), (size, size), common.diffuse("Floor"))
+    return common.add_plane("Floor", (0, 0, 0), (size, size), shading.diffuse("Floor"))
 
 
 def coloured_boxes(collection=None):
     boxes = []
     for name, (color, location, size, turn) in BOXES.items():
-        box = common.add_box(name, location, size, common.diffuse(name, color), turn)
+        box = common.add_box(name, location, size, shading.diffuse(name, color), turn)
         if collection:
             bpy.context.scene.collection.objects.unlink(box)
             collection.objects.link(box)
@@ -56,7 +57,7 @@ def coloured_boxes(collection=None):
 
 
 def matte_ball(location, radius, color=(0.7, 0.7, 0.7)):
-    return common.add_sphere("MatteBall", location, radius, common.diffuse("Matte", color), *BALL)
+    return common.add_sphere("MatteBall", location, radius, shading.diffuse("Matte", color), *BALL)
 
 
 def sun():
@@ -79,7 +80,7 @@ def test_image():
             return (0.95, 0.85, 0.25, 1.0)
         stripe = int(v * 8) % 2 if u > 0.5 else int((u + v) * 8) % 2
         return (0.25 + 0.6 * u, 0.80 if stripe else 0.45, 0.25 + 0.6 * v, 1.0)
-    return common.image_from_function("TestImage", 64, 64, texel)
+    return shading.image_from_function("TestImage", 64, 64, texel)
 
 
 # ---- mirrors and glass -----------------------------------------------------------------------
@@ -87,7 +88,7 @@ def test_image():
 def mirror_ball():
     checker_floor()
     coloured_boxes()
-    common.add_sphere("MirrorBall", (0, 0.2, 0.95), 0.95, common.mirror("Mirror"), *BALL)
+    common.add_sphere("MirrorBall", (0, 0.2, 0.95), 0.95, shading.mirror("Mirror"), *BALL)
     sun()
     camera()
 
@@ -95,7 +96,7 @@ def mirror_ball():
 def facing_mirrors():
     """Upright mirrors at y = 2 and y = -2; the camera stands before the near one."""
     checker_floor()
-    silver = common.mirror("Mirror", (0.9, 0.9, 0.9))
+    silver = shading.mirror("Mirror", (0.9, 0.9, 0.9))
     for name, y, turn in (("Far", 2.0, 90.0), ("Near", -2.0, -90.0)):
         mirror = common.add_plane(name, (0, y, 1.2), (5.0, 2.2), silver)
         mirror.rotation_euler = (math.radians(turn), 0, 0)
@@ -108,9 +109,9 @@ def facing_mirrors():
 def glass_ball():
     checker_floor()
     coloured_boxes()
-    common.add_sphere("GlassBall", (0, -0.6, 1.0), 0.9, common.glass("Glass", ior=1.45), *BALL)
+    common.add_sphere("GlassBall", (0, -0.6, 1.0), 0.9, shading.glass("Glass", ior=1.45), *BALL)
     common.add_box("BackWall", (0, 4.0, 1.5), (10.0, 0.2, 3.0),
-                   common.diffuse("Wall", (0.55, 0.40, 0.30)))
+                   shading.diffuse("Wall", (0.55, 0.40, 0.30)))
     sun()
     camera((0.0, -6.0, 1.9), (0.0, 0.0, 0.9))
 
@@ -148,16 +149,16 @@ def spot_shadow():
 # ---- textures --------------------------------------------------------------------------------
 
 def textured_plane():
-    common.add_plane("Textured", (0, 0, 0), (4.4, 4.4), common.diffuse("Image", image=test_image()))
+    common.add_plane("Textured", (0, 0, 0), (4.4, 4.4), shading.diffuse("Image", image=test_image()))
     common.add_box("TexturedBox", (1.0, 0.7, 0.5), (1.0, 1.0, 1.0),
-                   common.diffuse("BoxImage", image=bpy.data.images["TestImage"]), 25)
+                   shading.diffuse("BoxImage", image=bpy.data.images["TestImage"]), 25)
     sun()
     camera((0.0, -4.6, 3.0), (0.0, 0.1, 0.1))
 
 
 def texture_mapping():
     """Mapping node of type Point: location (0.2, 0.1), turned 30 degrees, scale (2, 3)."""
-    material = common.diffuse("Mapped", image=test_image())
+    material = shading.diffuse("Mapped", image=test_image())
     nodes, links = material.node_tree.nodes, material.node_tree.links
     mapping, coordinates = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
     mapping.inputs["Location"].default_value = (0.2, 0.1, 0.0)
@@ -177,10 +178,10 @@ def normal_map():
         nx, ny = 0.45 * math.cos(8 * math.pi * u), 0.35 * math.cos(6 * math.pi * v)
         length = math.sqrt(nx * nx + ny * ny + 1.0)
         return (0.5 + 0.5 * nx / length, 0.5 + 0.5 * ny / length, 0.5 + 0.5 / length, 1.0)
-    image = common.image_from_function("Waves", 128, 128, texel, non_color=True)
-    material, nodes, links, output = common.new_material("Waves")
+    image = shading.image_from_function("Waves", 128, 128, texel, non_color=True)
+    material, nodes, links, output = shading.new_material("Waves")
     shader, normal = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeNormalMap")
-    links.new(common.image_node(nodes, image).outputs["Color"], normal.inputs["Color"])
+    links.new(shading.image_node(nodes, image).outputs["Color"], normal.inputs["Color"])
     links.new(normal.outputs["Normal"], shader.inputs["Normal"])
     links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     common.add_plane("WavyFloor", (0, 0, 0), (5.0, 5.0), material)
@@ -198,18 +199,18 @@ def alpha_leaf():
     def texel(u, v):
         inside = abs(u - 0.5) < 0.42 * math.sin(math.pi * v) or abs(u - 0.5) < 0.03
         return (0.25 + 0.3 * v, 0.65, 0.20, 1.0 if inside else 0.0)
-    image = common.image_from_function("Leaf", 512, 512, texel)
-    mixed, nodes, links, output = common.new_material("MixLeaf")
-    texture, mix = common.image_node(nodes, image), nodes.new("ShaderNodeMixShader")
+    image = shading.image_from_function("Leaf", 512, 512, texel)
+    mixed, nodes, links, output = shading.new_material("MixLeaf")
+    texture, mix = shading.image_node(nodes, image), nodes.new("ShaderNodeMixShader")
     shader, clear = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeBsdfTransparent")
     links.new(texture.outputs["Color"], shader.inputs["Color"])
     links.new(texture.outputs["Alpha"], mix.inputs["Fac"])
     links.new(clear.outputs["BSDF"], mix.inputs[1])
     links.new(shader.outputs["BSDF"], mix.inputs[2])
     links.new(mix.outputs["Shader"], output.inputs["Surface"])
-    common.use_alpha_clip(mixed)
+    shading.use_alpha_clip(mixed)
     # Roughness 0.5 keeps Blender 3's Principled diffuse close to Lambert.
-    principled = common.principled("PrincipledLeaf", roughness=0.5, image=image, alpha=True)
+    principled = shading.principled("PrincipledLeaf", roughness=0.5, image=image, alpha=True)
     for name, x, material in (("MixLeaf", -1.1, mixed), ("PrincipledLeaf", 1.1, principled)):
         card = common.add_plane(name, (x, 0.2, 1.1), (1.6, 1.8), material)
         card.rotation_euler = (math.radians(80), 0, 0)
@@ -269,8 +270,8 @@ def environment():
             share = min(1.0, max(0.0, (radius - distance) / 0.02))  # five texels of soft rim
             color = tuple(c + share * (m - c) for c, m in zip(color, mark))
         return (*color, 1.0)
-    image = common.image_from_function("Sky", 512, 256, texel, is_float=True)
-    silver = common.mirror("Mirror")
+    image = shading.image_from_function("Sky", 512, 256, texel, is_float=True)
+    silver = shading.mirror("Mirror")
     common.add_sphere("MirrorBall", (-0.9, 0.0, 1.0), 1.0, silver, *BALL)
     common.add_box("MirrorBox", (1.3, 0.2, 0.7), (1.2, 1.2, 1.4), silver, 30)
     camera((0.0, -5.0, 1.4), (0.0, 0.0, 1.1), 28.0)
