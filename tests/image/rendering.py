@@ -11,6 +11,7 @@ FOLDER = Path(__file__).resolve().parent
 SCENES = FOLDER / "scenes"
 REFERENCES = FOLDER.parent / "references" / "image"
 TIMEOUT_S = 300
+FILE_KEYS = ("file", "import", "image", "cube")
 
 sys.path.insert(0, str(FOLDER.parent / "parity"))
 import exr
@@ -30,27 +31,22 @@ def merge_patch(target, patch):
 
 
 def write_scene(case, work):
-    """The case's scene file with its patch. It is put beside nothing: names of files in it are
-    relative to `tests/image/scenes` and made absolute here."""
+    """The case's scene file with its patch; names of files are made absolute, so it may lie
+    anywhere."""
     scene = json.loads((SCENES / f"{case.scene}.kscene").read_text(encoding="utf-8"))
-    scene = merge_patch(scene, case.patch)
     path = work / f"{case.name}.kscene"
-    path.write_text(json.dumps(absolute_files(scene), indent=1), encoding="utf-8")
+    path.write_text(json.dumps(absolute_files(merge_patch(scene, case.patch)), indent=1),
+                    encoding="utf-8")
     return path
 
 
-def absolute_files(node):
-    """A copy in which every value of a key 'file', and of 'files', is an absolute path."""
+def absolute_files(node, names_file=False):
+    """A copy in which what FILE_KEYS hold, names or lists of names, are absolute paths."""
     if isinstance(node, dict):
-        return {key: absolute_name(value) if key in ("file", "files") else absolute_files(value)
-                for key, value in node.items()}
-    return [absolute_files(value) for value in node] if isinstance(node, list) else node
-
-
-def absolute_name(value):
-    if isinstance(value, list):
-        return [absolute_name(name) for name in value]
-    return str(SCENES / value) if isinstance(value, str) else absolute_files(value)
+        return {key: absolute_files(value, key in FILE_KEYS) for key, value in node.items()}
+    if isinstance(node, list):
+        return [absolute_files(value, names_file) for value in node]
+    return str(SCENES / node) if names_file and isinstance(node, str) else node
 
 
 def run_command(build, *arguments):

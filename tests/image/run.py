@@ -63,7 +63,7 @@ def judge(build, case, primary, work):
         other = image_cases.find(case.same_as)
         judgement.reference = rendering.render(build, other, primary, work)
         judgement.compare(f"against {other.name}", judgement.reference, case.tolerance_db)
-    else:
+    elif case.reference:
         path = rendering.REFERENCES / f"{case.name}.exr"
         if path.exists():
             judgement.reference = exr.read(path)
