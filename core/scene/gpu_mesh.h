@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh as the rasteriser draws it: three vertices a triangle, triangles of one slot together.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gl/objects.h"
+#include "scene/scene.h"
+
+namespace kestrel {
+
+/// Vertices that share a material slot of the object.
+struct SlotRange {
+  uint32_t slot = 0;
+  int first_vertex = 0;
+  int vertex_count = 0;
+};
+
+/// Per-corner vertex streams, object space; the optional ones are empty where the mesh's are.
+struct VertexStreams {
+  std::vector<vec3> positions;
+  std::vector<vec3> face_normals;  // unit, by the winding; zero where the triangle has no area
+  std::vector<vec3> normals;
+  std::vector<vec2> uvs;
+  std::vector<vec4> tangents;
+  std::vector<SlotRange> ranges;  // ascending slots
+  Bounds bounds;                  // of the triangles' corners
+};
+
+/// Spreads a mesh into streams; triangles keep their order within a slot.
+VertexStreams expand_mesh(const Mesh& mesh);
+
+/// The streams in GL memory. GL thread only.
+class GpuMesh {
+ public:
+  explicit GpuMesh(const Mesh& mesh);
+
+  /// Binds the streams; absent ones read as constants (flat normals, uv (0, 0), no tangent).
+  void bind() const;
+
+  const std::vector<SlotRange>& ranges() const { return ranges_; }
+  const Bounds& bounds() const { return bounds_; }
+
+ private:
+  std::vector<SlotRange> ranges_;
+  Bounds bounds_;
+  gl::Buffer positions_, face_normals_, normals_, uvs_, tangents_;
+  gl::VertexArray vertex_array_;
+};
+
+}  // namespace kestrel

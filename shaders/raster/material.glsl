@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A material at a point: each property is its colour times its texture (paper, Table 1 and
+// listing 3), as core/shading/surface.cpp evaluates it. Textures are read at level 0 on purpose, so
+// that rasterised and ray-traced surfaces agree.
+
+layout(std430, binding = 0) readonly buffer MaterialBuffer {
+  GpuMaterial materials[];
+};
+
+layout(binding = 0) uniform sampler2D emission_texture;
+layout(binding = 1) uniform sampler2D ambient_texture;
+layout(binding = 2) uniform sampler2D diffuse_texture;
+layout(binding = 3) uniform sampler2D specular_texture;
+layout(binding = 4) uniform sampler2D normal_texture;
+layout(binding = 5) uniform sampler2D optical_texture;
+
+const uint kAlphaMask = 1u;
+const uint kAlphaBlend = 2u;
+// What an opaque texel may come to after filtering.
+const float kOpaque = 1.0 - 1e-6;
+
+struct MaterialSample {
+  vec3 emission;
+  vec3 ambient;
+  vec4 diffuse;   // A: alpha after the alpha mode
+  vec4 specular;  // A: exponent, 0 ... 1 for 1 ... 255
+  vec3 optical;   // R reflectivity, G index of refraction, B opacity including alpha
+};
+
+// Ends the fragment where a mask leaves no surface.
+MaterialSample sample_material(GpuMaterial m, vec2 uv, float environment_ior) {
+  MaterialSample s;
+  s.diffuse = m.diffuse * textureLod(diffuse_texture, uv, 0.0);
+  if (m.alpha_mode == kAlphaMask && s.diffuse.a < m.alpha_cutoff) discard;
+  if (m.alpha_mode != kAlphaBlend) s.diffuse.a = 1.0;
+  s.emission = m.emission * textureLod(emission_texture, uv, 0.0).rgb;
+  s.ambient = m.ambient * textureLod(ambient_texture, uv, 0.0).rgb;
+  s.specular = m.specular * textureLod(specular_texture, uv, 0.0);
+  s.optical = m.optical * textureLod(optical_texture, uv, 0.0).rgb;
+  // What alpha alone leaves uncovered shines straight through.
+  if (m.alpha_mode == kAlphaBlend && s.optical.b >= kOpaque) s.optical.g = environment_ior;
+  s.optical.b *= s.diffuse.a;
+  return s;
+}
+
+vec3 safe_normalize(vec3 v, vec3 fallback) {
+  float squared = dot(v, v);
+  return squared > 1e-30 ? v * inversesqrt(squared) : fallback;
+}
+
+// The normal map's normal in world space; `normal` unit, `tangent` as interpolated, w = sign of the
+// bitangent. No tangent: the normal as it is.
+vec3 mapped_normal(GpuMaterial m, vec2 uv, vec3 normal, vec4 tangent) {
+  vec3 t = safe_normalize(tangent.xyz - normal * dot(normal, tangent.xyz), vec3(0.0));
+  if (m.has_normal_texture == 0u || t == vec3(0.0)) return normal;
+  vec3 b = cross(normal, t) * (tangent.w < 0.0 ? -1.0 : 1.0);
+  vec3 painted = textureLod(normal_texture, uv, 0.0).rgb * 2.0 - 1.0;
+  vec3 n = mix(vec3(0.0, 0.0, 1.0), painted, m.normal_strength);
+  return safe_normalize(n.x * t + n.y * b + n.z * normal, normal);
+}
