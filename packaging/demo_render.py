@@ -7,6 +7,7 @@ Writes OUT.exr (every pass, multilayer, linear) and OUT.png (view transform Stan
 what to tell the user on lines that begin with `demo: `.
 """
 
+import json
 import sys
 import time
 from pathlib import Path
@@ -47,12 +48,50 @@ def render(scene, out):
     return seconds
 
 
+def choose_all_passes(view_layer):
+    """Switch on every pass that Kestrel has; returns their names."""
+    from kestrel import passes
+    for item in passes.PASSES:
+        if item.toggle:
+            setattr(view_layer, item.toggle, True)
+    view_layer.kestrel.passes = {item.name for item in passes.OPTIONAL}
+    return [item.blender_name for item in passes.enabled(view_layer)]
+
+
+def last_stats(scene, view_layer):
+    """What the core says about the frame just rendered."""
+    from kestrel import engine, session
+    stats = session.acquire(engine.session_key(scene, view_layer)).renderer.stats()
+    return json.loads(stats)
+
+
+def tell_stats(stats):
+    times = stats["stages_ms"]
+    tell("stages: " + ", ".join(f"{stage} {times[stage]:.1f} ms" for stage in STAGES))
+    tell(f"frame: {stats['frame_ms']:.0f} ms, primary visibility by {stats['primary']}, rays: "
+         + ", ".join(f"{kind} {count:,}" for kind, count in stats["rays"].items()))
+    selected = sum(bool(item["selected"]) for item in stats["objects"])
+    tell(f"objects: {len(stats['objects'])}, ray traced: {selected}")
+
+
 def main():
     out = Path(sys.argv[sys.argv.index("--out") + 1]).resolve()
-    prepare(bpy.context.scene)
-    seconds = render(bpy.context.scene, out)
-    tell(f"picture: {out}.png")
-    tell(f"render call: {seconds:.2f} s")
+    scene, view_layer = bpy.context.scene, bpy.context.view_layer
+    prepare(scene)
+    names = choose_all_passes(view_layer)
+    seconds = render(scene, out)
+    stats = last_stats(scene, view_layer)
+    (out.parent / "stats.json").write_text(json.dumps({"frames": [stats]}, indent=1) + "\n")
+    tell_stats(stats)
+    tell(f"render call: {seconds:.2f} s at {SIZE_PX[0]}x{SIZE_PX[1]}, {scene.kestrel.samples} samples")
+    tell(f"passes: {', '.join(names)}")
+    tell(f"all passes: {display(out)}.exr")
+    tell(f"picture: {display(out)}.png")
+
+
+def display(path):
+    """The path as the user may type it."""
+    return path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path
 
 
 main()

@@ -29,7 +29,7 @@ TITLES = {"scene": "Of a scene", "object": "Of an object"}
 def allowed(row):
     if row["items"]:
         return ", ".join(f"`{item}`" for item in row["items"])
-    if row["type"] in ("integer", "real", "color"):
+    if row["type"] in ("int", "float", "color"):
         number = "three numbers " if row["type"] == "color" else ""
         unit = f" {row['unit']}" if row["unit"] else ""
         return f"{number}{row['min']:g} to {row['max']:g}{unit}"

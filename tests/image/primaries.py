@@ -38,7 +38,7 @@ def one_channel(planes, layer):
 def render(build, scene, size, primary, work):
     out = work / f"{primary}.exr"
     rendering.run_command(build, "render", scene, "-o", out, "--size", size, "--passes",
-                          "Combined,Lighting,Object", "--set", f"primary={primary}", "--set",
+                          "Combined,Lighting,ObjectId", "--set", f"primary={primary}", "--set",
                           "samples=1")
     return planes_of(out)
 
@@ -58,7 +58,7 @@ def main():
     work.mkdir(parents=True, exist_ok=True)
     raster, rays = (render(args.build, args.scene, args.size, primary, work)
                     for primary in ("raster", "rays"))
-    same = one_channel(raster, "Object") == one_channel(rays, "Object")
+    same = one_channel(raster, "ObjectId") == one_channel(rays, "ObjectId")
     lit = [numpy.stack([planes[f"Lighting.{c}"] for c in "RGB"], axis=-1)
            for planes in (raster, rays)]
     decibels = metrics.psnr(*lit, mask=same)
