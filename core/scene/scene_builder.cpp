@@ -186,19 +186,19 @@ void SceneBuilder::require_references() {
     fail(ErrorCode::invalid_operation,
          "The scene has no camera. Set one with kestrelSetCamera() before the commit.");
   }
-  const auto require_texture = [this](uint64_t texture, const char* kind, const std::string& user) {
+  const auto require_texture = [this](uint64_t texture, const std::string* material) {
     if (texture == 0 || textures_.contains(texture)) return;
     fail(ErrorCode::invalid_argument,
-         "{}{} uses texture {}, which is not in the scene. Set that texture, or use 0 for none.",
-         kind, user, texture);
+         "{} uses texture {}, which is not in the scene. Set that texture, or use 0 for none.",
+         material ? fmt::format("Material '{}'", *material) : "The world", texture);
   };
   for (const auto& [id, material] : materials_) {
     for (const uint64_t texture : texture_ids(material)) {
-      require_texture(texture, "Material ", material.values.name);
+      require_texture(texture, &material.values.name);
     }
   }
   for (int i = 0; i < texture_count(world_.values.kind); ++i) {
-    require_texture(world_.textures[i], "The world", "");
+    require_texture(world_.textures[i], nullptr);
   }
   for (const auto& [id, object] : objects_) {
     const ObjectInput& input = object.input;

@@ -89,14 +89,14 @@ std::vector<TextureStore::Job> TextureStore::jobs_for(std::span<const uint64_t> 
     Entry& entry = *entries_.find(id);
     if (entry.texture) continue;
     if (!std::holds_alternative<File>(entry.source)) {
-      jobs.push_back({&entry, {}, false, {&entry}, nullptr, {}});
+      jobs.emplace_back(entry).waiting.push_back(&entry);
       continue;
     }
     const FileKey key = key_of(entry);
     const auto known = decoded_.find(key);
     if (known != decoded_.end() && (entry.texture = known->second.lock())) continue;
     const auto [place, added] = job_of_file.emplace(key, jobs.size());
-    if (added) jobs.push_back({&entry, key, true, {}, nullptr, {}});
+    if (added) jobs.emplace_back(entry).key = key;
     jobs[place->second].waiting.push_back(&entry);
   }
   return jobs;
@@ -128,8 +128,8 @@ void TextureStore::decode(std::span<const uint64_t> ids) {
       const File* file = std::get_if<File>(&job.first->source);
       log::warning("Texture '{}'{} is shown in magenta. {}", job.first->options.name,
                    file ? fmt::format(" (file '{}')", file->path) : "", job.failure);
-    } else if (job.cacheable) {
-      decoded_[job.key] = job.texture;
+    } else if (job.key) {
+      decoded_[*job.key] = job.texture;
     }
     for (Entry* entry : job.waiting) {
       entry->texture = job.texture;

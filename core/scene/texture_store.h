@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -67,12 +68,13 @@ class TextureStore {
   };
   /// One image to decode, and who waits for it.
   struct Job {
-    const Entry* first;
-    FileKey key;
-    bool cacheable;
+    const Entry* first = nullptr;
+    std::optional<FileKey> key;  // of files
     std::vector<Entry*> waiting;
     std::shared_ptr<const Texture> texture;
     std::string failure;
+
+    explicit Job(const Entry& entry) : first(&entry) {}
   };
 
   static FileKey key_of(const Entry& entry);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// C structs to the core's: pointers, counts and enumerations are checked here, values in the core.
+// All throw Error(invalid_argument).
+#pragma once
+
+#include <string>
+
+#include "kestrel/kestrel.h"
+#include "scene/scene_builder.h"
+
+namespace kestrel::api {
+
+/// Empty for NULL; bytes that are not UTF-8 become '?', since names end up in JSON.
+std::string text_from(const char* text);
+
+/// The spans point into the caller's arrays.
+MeshInput mesh_from(const KestrelMesh& mesh);
+TextureOptions options_from(const KestrelTextureOptions* options);
+/// The number of values of a picture with 4 channels; throws where a side is not in 1…32768.
+size_t texel_values(int width, int height);
+MaterialInput material_from(const KestrelMaterial& material);
+LightInput light_from(const KestrelLight& light);
+ObjectInput object_from(const KestrelObject& object);
+mat4x3 matrix_from(const float values[12]);
+Camera camera_from(const KestrelCamera& camera);
+WorldInput world_from(const KestrelWorld& world);
+ItemKind kind_from(KestrelKind kind);
+
+}  // namespace kestrel::api

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// kestrel.h: rendering.
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/errors.h"
+#include "api/handles.h"
+#include "images/images.h"
+
+using namespace kestrel;
+using namespace kestrel::api;
+
+namespace {
+
+constexpr int kMaxSide = 65536;  // pixels
+
+/// Has the renderer to itself; another that wants it meanwhile gets an error instead of waiting.
+class Exclusive {
+ public:
+  explicit Exclusive(RendererState& state) : state_(state) {
+    const std::lock_guard lock(state.mutex);
+    if (state.busy) {
+      fail(ErrorCode::invalid_operation,
+           "The renderer is busy with a frame. Wait for it, or stop it with kestrelCancel().");
+    }
+    state.busy = true;
+    state.cancelled = false;
+  }
+  ~Exclusive() {
+    const std::lock_guard lock(state_.mutex);
+    state_.busy = false;
+  }
+  Exclusive(const Exclusive&) = delete;
+  Exclusive& operator=(const Exclusive&) = delete;
+
+ private:
+  RendererState& state_;
+};
+
+bool is_cancelled(RendererState& state) {
+  const std::lock_guard lock(state.mutex);
+  return state.cancelled;
+}
+
+std::shared_ptr<const Scene> published_scene(SceneState& state) {
+  const std::lock_guard lock(state.published_mutex);
+  if (!state.published) {
+    fail(ErrorCode::invalid_operation,
+         "The scene was never committed. Call kestrelCommitScene() before kestrelRender().");
+  }
+  return state.published;
+}
+
+const Film& finished_film(const RendererState& state) {
+  const Film& film = state.renderer.film();
+  if (film.width() == 0) {
+    fail(ErrorCode::invalid_operation,
+         "There is no frame yet. Call kestrelRender() first, and check that it succeeds.");
+  }
+  return film;
+}
+
+const PassInfo& find_pass(std::string_view name) {
+  std::string known;
+  for (const PassInfo& pass : pass_table()) {
+    if (name == pass.name) return pass;
+    known += (known.empty() ? "" : ", ") + std::string(pass.name);
+  }
+  fail(ErrorCode::invalid_argument, "There is no pass '{}'. Passes are: {}.", name, known);
+}
+
+/// "Combined,Depth" or "all", each at most once.
+std::vector<const PassInfo*> parse_passes(std::string_view text) {
+  std::vector<const PassInfo*> passes;
+  if (text == "all") {
+    for (const PassInfo& pass : pass_table()) passes.push_back(&pass);
+    return passes;
+  }
+  while (true) {
+    const size_t comma = std::min(text.find(','), text.size());
+    const PassInfo* pass = &find_pass(text.substr(0, comma));
+    if (std::find(passes.begin(), passes.end(), pass) == passes.end()) passes.push_back(pass);
+    if (comma == text.size()) return passes;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+KestrelRenderer kestrelNewRenderer(KestrelScene scene) {
+  return guarded_or(KestrelRenderer{nullptr}, [&] {
+    return renderers().insert(std::make_shared<RendererState>(scenes().get(scene)));
+  });
+}
+
+void kestrelRetainRenderer(KestrelRenderer renderer) {
+  guarded([&] { renderers().retain(renderer); });
+}
+
+void kestrelReleaseRenderer(KestrelRenderer renderer) {
+  guarded([&] { renderers().release(renderer); });
+}
+
+KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
+                           KestrelProgressCallback progress, void* user) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
+      fail(ErrorCode::invalid_argument,
+           "A picture of {} x {} pixels is not supported. Use 1 to {} on each side.", width, height,
+           kMaxSide);
+    }
+    const auto scene = published_scene(*state->scene);
+    const Exclusive exclusive(*state);
+    // Also tells a renderer that had not begun yet when kestrelCancel() was called.
+    const Progress report = [&](float fraction, std::string_view status) {
+      if (is_cancelled(*state)) return false;
+      return !progress || progress(user, fraction, std::string(status).c_str());
+    };
+    state->renderer.render_frame(scene, width, height, report);
+  });
+}
+
+void kestrelCancel(KestrelRenderer renderer) {
+  guarded([&] {
+    const auto state = renderers().get(renderer);
+    const std::lock_guard lock(state->mutex);
+    if (!state->busy) return;
+    state->cancelled = true;
+    state->renderer.cancel();
+  });
+}
+
+KestrelError kestrelGetFrameSize(KestrelRenderer renderer, int* width, int* height) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    require(width, "width");
+    require(height, "height");
+    const Exclusive exclusive(*state);
+    const Film& film = finished_film(*state);
+    *width = film.width();
+    *height = film.height();
+  });
+}
+
+size_t kestrelGetPassCount(KestrelRenderer renderer) {
+  return guarded_or(size_t{0}, [&] {
+    renderers().get(renderer);
+    return pass_table().size();
+  });
+}
+
+const char* kestrelGetPassName(KestrelRenderer renderer, size_t index) {
+  return guarded_or(static_cast<const char*>(nullptr), [&] {
+    renderers().get(renderer);
+    if (index >= pass_table().size()) {
+      fail(ErrorCode::invalid_argument, "There is no pass number {}; there are {}, from 0 on.",
+           index, pass_table().size());
+    }
+    return pass_table()[index].name;
+  });
+}
+
+const char* kestrelGetPassChannels(KestrelRenderer renderer, const char* name) {
+  return guarded_or(static_cast<const char*>(nullptr), [&] {
+    renderers().get(renderer);
+    return find_pass(require(name, "name")).channels;
+  });
+}
+
+KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* pixels,
+                             size_t float_count) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    const PassInfo& pass = find_pass(require(name, "name"));
+    require(pixels, "pixels");
+    const Exclusive exclusive(*state);
+    const Film& film = finished_film(*state);
+    const size_t channels = std::strlen(pass.channels);
+    const size_t expected =
+        channels * static_cast<size_t>(film.width()) * static_cast<size_t>(film.height());
+    if (float_count != expected) {
+      fail(ErrorCode::invalid_argument,
+           "Pass '{}' has {} x {} pixels with {} channels: {} floats, not {}.", name, film.width(),
+           film.height(), channels, expected, float_count);
+    }
+    const std::vector<float> values = film.pass(pass.name);
+    std::copy(values.begin(), values.end(), pixels);
+  });
+}
+
+const char* kestrelGetStats(KestrelRenderer renderer) {
+  return guarded_or(static_cast<const char*>(nullptr), [&] {
+    thread_local std::string stats;
+    const auto state = renderers().get(renderer);
+    const Exclusive exclusive(*state);
+    finished_film(*state);
+    stats = state->renderer.stats_json();
+    return stats.c_str();
+  });
+}
+
+KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path, const char* passes) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    require(path, "path");
+    const auto chosen = parse_passes(require(passes, "passes"));
+    const Exclusive exclusive(*state);
+    const Film& film = finished_film(*state);
+    std::vector<std::vector<float>> values;
+    std::vector<images::Layer> layers;
+    for (const PassInfo* pass : chosen) {
+      values.push_back(film.pass(pass->name));
+      layers.push_back({pass->name, pass->channels, values.back().data()});
+    }
+    images::write_file(path, film.width(), film.height(), layers);
+  });
+}
