@@ -116,7 +116,7 @@ void Renderer::render_frame(std::shared_ptr<const Scene> scene, int width, int h
 void Renderer::Impl::render(const Progress& progress) {
   stats = {};
   totals = {};
-  film = {};
+  film.clear();
   {
     const Stopwatch watch(stats.frame_ms);
     prepare();
@@ -224,7 +224,7 @@ void Renderer::Impl::finish() {
   heuristic.learn(inputs, stats.selection, totals, stats.stages.trace, stats.samples);
   stats.rays += totals.rays;
   stats.trace_calls_ms = totals.trace_calls_ms;
-  finished = std::move(film);
+  std::swap(finished, film);
   stats_json = to_json(stats, *scene);
   log::info(
       "{}x{}, {} samples, primary {}: {:.1f} ms (update {:.1f}, raster {:.1f}, heuristic "

@@ -22,6 +22,9 @@ const std::vector<PassInfo>& pass_table();
 /// those of the first sample, which lies in the pixel's centre.
 class Film {
  public:
+  /// Starts a new picture; the next first sample gets this one's memory in exchange.
+  void clear() { samples_ = 0; }
+
   /// Takes the buffers over: the first sample's are kept, later ones are added and left as they
   /// are. All samples have one size.
   void add_sample(const FrameInputs& inputs, GBuffer& gbuffer, EffectBuffers& effects,

@@ -3,7 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <unordered_set>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -41,12 +41,15 @@ void skip_masked(const RTCFilterFunctionNArguments* args) {
 /// Listing 8b: a shadow ray loses light at every surface and ends when none is left.
 void attenuate_shadow(const RTCFilterFunctionNArguments* args) {
   const Scene& scene = rt_scene_of(args).scene();
-  vec3* transmitted = reinterpret_cast<embree::ShadowQuery*>(args->context)->transmitted;
+  embree::ShadowState* states = reinterpret_cast<embree::ShadowQuery*>(args->context)->states;
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
-    vec3& left = transmitted[RTCRayN_id(args->ray, args->N, i)];
-    left *= shadow_transmission(scene, hit_of(args, i));
-    if (max_component(left) > 0.0f) args->valid[i] = 0;
+    embree::ShadowState& state = states[RTCRayN_id(args->ray, args->N, i)];
+    const SurfaceHit hit = hit_of(args, i);
+    if (state.enter(static_cast<uint32_t>(hit.object), RTCRayN_tfar(args->ray, args->N, i))) {
+      state.transmitted *= shadow_transmission(scene, hit);
+    }
+    if (max_component(state.transmitted) > 0.0f) args->valid[i] = 0;
   }
 }
 
@@ -62,6 +65,18 @@ void report_error(void*, RTCError code, const char* text) {
 }
 
 }  // namespace
+
+bool embree::ShadowState::enter(uint32_t object, float distance) {
+  constexpr float kSame = 2e-6f;  // relative; a few roundings of the intersection
+  const uint32_t known = std::min<uint32_t>(crossings, kRemembered);
+  for (uint32_t i = 0; i < known; ++i) {
+    if (objects[i] == object && std::abs(distances[i] - distance) <= kSame * distance) return false;
+  }
+  distances[crossings % kRemembered] = distance;
+  objects[crossings % kRemembered] = object;
+  ++crossings;
+  return true;
+}
 
 embree::DeviceHandle embree::new_device() {
   RTCDevice device = rtcNewDevice(nullptr);

@@ -25,11 +25,25 @@ using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 /// A device whose errors go to the log. Throws Error(unknown) where Embree cannot start.
 DeviceHandle new_device();
 
-/// Query with what shadow rays need: light left, by RTCRay::id.
+/// What a shadow ray has met so far.
+struct ShadowState {
+  /// A ray through an edge meets both triangles; the light is to be taken off once. Crossings of
+  /// one object at practically the same distance count as one.
+  static constexpr int kRemembered = 8;
+
+  vec3 transmitted{1.0f};
+  uint32_t crossings = 0;
+  float distances[kRemembered];
+  uint32_t objects[kRemembered];
+
+  /// Whether this crossing is new; remembers it.
+  bool enter(uint32_t object, float distance);
+};
+
+/// Query with what shadow rays need: their states, by RTCRay::id.
 struct ShadowQuery : Query {
-  vec3* transmitted;
-  ShadowQuery(bool coherent, vec3* transmitted_by_id)
-      : Query(coherent), transmitted(transmitted_by_id) {}
+  ShadowState* states;
+  ShadowQuery(bool coherent, ShadowState* states_by_id) : Query(coherent), states(states_by_id) {}
 };
 
 }  // namespace embree

@@ -26,9 +26,9 @@ void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance
 }
 
 double ShadowQueue::trace(const RtScene& scene, bool coherent) {
-  transmitted_.assign(tasks_.size(), vec3(1.0f));
+  states_.assign(tasks_.size(), embree::ShadowState());
   const auto begin = std::chrono::steady_clock::now();
-  embree::ShadowQuery query(coherent, transmitted_.data());
+  embree::ShadowQuery query(coherent, states_.data());
   for (size_t p = 0; p < packets_.size(); ++p) {
     alignas(32) int valid[8];
     for (size_t lane = 0; lane < 8; ++lane) valid[lane] = 8 * p + lane < tasks_.size() ? -1 : 0;

@@ -28,7 +28,7 @@ class ShadowQueue {
     const double ms = trace(scene, coherent);
     for (size_t i = 0; i < tasks_.size(); ++i) {
       const bool blocked = packets_[i / 8].tfar[i % 8] < 0.0f;
-      receive(tasks_[i], blocked ? vec3(0.0f) : transmitted_[i]);
+      receive(tasks_[i], blocked ? vec3(0.0f) : states_[i].transmitted);
     }
     packets_.clear();
     tasks_.clear();
@@ -40,7 +40,7 @@ class ShadowQueue {
 
   std::vector<RTCRay8> packets_;
   std::vector<Task> tasks_;
-  std::vector<vec3> transmitted_;
+  std::vector<embree::ShadowState> states_;
 };
 
 }  // namespace kestrel

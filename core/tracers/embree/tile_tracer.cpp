@@ -125,6 +125,7 @@ void TileTracer::trace_primary_shadows() {
 }
 
 void TileTracer::start_paths() {
+  next_paths_.clear();
   for (const Pixel& p : pixels_) {
     const Path eye{{}, -p.to_viewer, vec3(1.0f), 1.0f, p.index, 0, false};
     spawn(eye, p.surface, p.entering, camera_.distance(p.surface.position), 1.0f, 1.0f,

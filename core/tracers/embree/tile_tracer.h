@@ -41,10 +41,12 @@ class TileTracer {
   struct Pixel {
     uint32_t index;
     uint32_t unit;
-    uint8_t effects;
     Surface surface;  // faces the viewer
     vec3 to_viewer;
-    float entering;  // 1 where the mesh's own side faces the viewer, else -1
+    bool entering = true;        // the mesh's own side faces the viewer
+    bool needs_lighting = true;  // shadows are traced, and the surface's own light shows
+    float reflectivity = 0.0f;   // of what is traced
+    float transparency = 0.0f;
   };
 
   void gather_pixels(int x0, int y0);
