@@ -123,18 +123,68 @@ void locate(const Camera& camera, const Bounds& bounds_ws, UnitSelection& unit) 
   unit.distance = std::max(glm::length(from_camera_ws), kMinDistance);
 }
 
+// ---- Candidates ------------------------------------------------------------------------------
+
+/// Visible units of which some effect is left to decide, and what those cost that leave nothing.
+struct Candidates {
+  std::vector<SelectionNode> nodes;
+  std::vector<uint32_t> units;   // by node
+  std::vector<uint8_t> effects;  // by node: EffectBits to decide on
+  double cost_of_always = 0.0;   // milliseconds
+};
+
+/// Also gives every visible unit its `always` effects; one that has no others is thereby selected.
+Candidates grant_always(const Scene& scene, double ms_per_ray, Selection& selection) {
+  const size_t lights = shadow_light_count(scene);
+  Candidates candidates;
+  for (size_t i = 0; i < selection.units.size(); ++i) {
+    UnitSelection& u = selection.units[i];
+    const WantedEffects wanted = wanted_effects(scene.units[i], lights);
+    if (u.area == 0 || wanted.all() == 0) continue;
+    u.effects = wanted.always;
+    u.selected = wanted.automatic == 0;
+    const double cost_of_q = static_cast<double>(u.area) * u.estimated_cost * ms_per_ray;
+    candidates.cost_of_always += rays_per_pixel(wanted.always, lights) * cost_of_q;
+    if (wanted.automatic == 0) continue;
+    candidates.nodes.push_back({rays_per_pixel(wanted.automatic, lights) * cost_of_q, u.relevance});
+    candidates.units.push_back(static_cast<uint32_t>(i));
+    candidates.effects.push_back(wanted.automatic);
+  }
+  return candidates;
+}
+
+/// 1 on the pixels of units of which some effect is traced, 0 elsewhere.
+void write_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer) {
+  std::vector<float> mask_of_id(scene.objects.size() + 1, 0.0f);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    const int unit = scene.objects[i].unit;
+    if (unit != kNone && selection.units[unit].effects != 0) mask_of_id[i + 1] = 1.0f;
+  }
+  gbuffer.heuristic_mask.resize(gbuffer.object.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, gbuffer.object.size(), kPixelsPerTask),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      for (size_t i = range.begin(); i < range.end(); ++i) {
+                        gbuffer.heuristic_mask[i] = mask_of_id[gbuffer.object[i]];
+                      }
+                    });
+}
+
 }  // namespace
 
 // ---- The stage -------------------------------------------------------------------------------
 
 Selection HeuristicStage::run(const FrameInputs& inputs, GBuffer& gbuffer) {
   match_units(inputs.scene.units);
+  if (starved_frames_ >= kMaxStarvedFrames) {
+    ray_cost_.forget();
+    starved_frames_ = 0;
+  }
   Selection selection;
   selection.units.resize(inputs.scene.units.size());
   measure_areas(inputs.scene, gbuffer, selection);
   estimate(inputs, selection);
-  choose(inputs.scene, selection);
-  write_heuristic_mask(inputs.scene, selection, gbuffer);
+  choose(inputs, selection);
+  write_mask(inputs.scene, selection, gbuffer);
   return selection;
 }
 
@@ -181,65 +231,31 @@ void HeuristicStage::estimate(const FrameInputs& inputs, Selection& selection) c
 }
 
 /// Fills `selected` and `effects`, and remembers S.
-void HeuristicStage::choose(const Scene& scene, Selection& selection) {
-  const Settings& settings = scene.settings;
-  const size_t lights = shadow_light_count(scene);
-  const bool limited = settings.selection == SelectionPolicy::graph && settings.budget_ms > 0.0f;
-
-  std::vector<SelectionNode> nodes;  // of visible units that leave something to decide
-  std::vector<uint32_t> unit_of_node;
-  double cost_of_always = 0.0;
-  for (size_t i = 0; i < selection.units.size(); ++i) {
-    UnitSelection& u = selection.units[i];
-    const WantedEffects wanted = wanted_effects(scene.units[i], lights);
-    if (u.area == 0 || wanted.all() == 0) continue;
-    u.effects = wanted.always;
-    u.selected = wanted.automatic == 0;
-    const double cost_of_ray = static_cast<double>(u.area) * u.estimated_cost *
-                               ray_cost_.ms_per_ray();  // one for each of its pixels
-    cost_of_always += rays_per_pixel(wanted.always, lights) * cost_of_ray;
-    if (wanted.automatic == 0 || settings.selection == SelectionPolicy::none) continue;
-    nodes.push_back({rays_per_pixel(wanted.automatic, lights) * cost_of_ray, u.relevance});
-    unit_of_node.push_back(static_cast<uint32_t>(i));
-  }
+void HeuristicStage::choose(const FrameInputs& inputs, Selection& selection) {
+  const SelectionPolicy policy = inputs.scene.settings.selection;
+  const bool limited = policy == SelectionPolicy::graph && inputs.budget_ms > 0.0f;
+  Candidates candidates = grant_always(inputs.scene, ray_cost_.ms_per_ray(), selection);
+  if (policy == SelectionPolicy::none) candidates.nodes.clear();
 
   const double budget = limited && calibrated()
-                            ? settings.budget_ms / ray_cost_.headroom() - cost_of_always
+                            ? inputs.budget_ms / ray_cost_.headroom() - candidates.cost_of_always
                             : std::numeric_limits<double>::infinity();
-  const std::vector<bool> chosen = select_nodes(nodes, budget);
-  for (size_t n = 0; n < nodes.size(); ++n) {
+  const std::vector<bool> chosen = select_nodes(candidates.nodes, budget);
+  bool any_chosen = false;
+  for (size_t n = 0; n < chosen.size(); ++n) {
     if (!chosen[n]) continue;
-    UnitSelection& u = selection.units[unit_of_node[n]];
+    UnitSelection& u = selection.units[candidates.units[n]];
     u.selected = true;
-    u.effects |= wanted_effects(scene.units[unit_of_node[n]], lights).automatic;
+    u.effects |= candidates.effects[n];
+    any_chosen = true;
   }
   if (limited && !calibrated()) return;  // for a probe; not what this frame selects
 
   for (size_t i = 0; i < memory_.size(); ++i) {
     memory_[i].was_selected = selection.units[i].selected;
   }
-  const bool starved = !nodes.empty() && cost_of_always == 0.0 &&
-                       std::find(chosen.begin(), chosen.end(), true) == chosen.end();
+  const bool starved = !chosen.empty() && !any_chosen && candidates.cost_of_always == 0.0;
   starved_frames_ = starved ? starved_frames_ + 1 : 0;
-  if (starved_frames_ >= kMaxStarvedFrames) {
-    starved_frames_ = 0;
-    ray_cost_.forget();
-  }
-}
-
-void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer) {
-  std::vector<float> mask_of_id(scene.objects.size() + 1, 0.0f);
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    const int unit = scene.objects[i].unit;
-    if (unit != kNone && selection.units[unit].effects != 0) mask_of_id[i + 1] = 1.0f;
-  }
-  gbuffer.heuristic_mask.resize(gbuffer.object.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, gbuffer.object.size(), kPixelsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i < range.end(); ++i) {
-                        gbuffer.heuristic_mask[i] = mask_of_id[gbuffer.object[i]];
-                      }
-                    });
 }
 
 // ---- Learning --------------------------------------------------------------------------------
@@ -281,7 +297,7 @@ double HeuristicStage::learn_unit_costs(const Scene& scene, const Selection& sel
     const bool traced_whole = u.effects == wanted_effects(scene.units[i], lights).all();
     if (scene.units[i].settings.cost <= 0.0f && traced_whole) {
       // Coverage below 1 is a sample of the pixels, the smaller the less it is to be trusted.
-      const double prior = kPriorPixels * (1.0 - coverage);
+      const double prior = kPriorPixels * std::max(1.0 - coverage, 0.0);
       const double measured = (u.traced_rays / q + prior * cost) / (pixels + prior);
       const float weight = memory_[i].cost > 0.0f ? kCostSmoothing : 1.0f;
       cost += weight * (static_cast<float>(measured) - cost);

@@ -25,8 +25,8 @@ class HeuristicStage {
   /// Learns from a traced frame: milliseconds per ray (T is in milliseconds) and, where a unit's
   /// cost setting is 0, its own E from the rays it really needed; afterwards Σ C over what was
   /// traced is its time, smoothed. Fills `ms` and `traced_rays` of each unit. `selection` is that
-  /// of the last run(), `trace_ms` stage 3's wall time, or a probe's, and `coverage` the share of
-  /// the selected pixels it traced (0…1].
+  /// of the last run(); `trace_ms` is stage 3's wall time; `coverage` is how often it traced each
+  /// selected pixel: the number of samples, or the share of pixels that a probe took.
   void learn(const FrameInputs& inputs, Selection& selection, const EffectBuffers& effects,
              double trace_ms, double coverage = 1.0);
 
@@ -48,16 +48,12 @@ class HeuristicStage {
 
   void match_units(const std::vector<Unit>& units);
   void estimate(const FrameInputs& inputs, Selection& selection) const;
-  void choose(const Scene& scene, Selection& selection);
+  void choose(const FrameInputs& inputs, Selection& selection);
   double learn_unit_costs(const Scene& scene, const Selection& selection, double coverage);
 
   RayCost ray_cost_;
   std::vector<UnitMemory> memory_;  // parallel to the scene's units
   int starved_frames_ = 0;          // frames in a row in which nothing fitted
 };
-
-/// Sets the mask to 1 on the pixels of units of which some effect is traced, to 0 elsewhere. run()
-/// has done it for its own G-buffer; further samples of the frame have theirs.
-void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer);
 
 }  // namespace kestrel
