@@ -272,15 +272,21 @@ void read_memory(const void* data, size_t byte_count, KestrelPluginImage& image)
   if (!data || byte_count == 0) throw std::runtime_error("it has no bytes");
   const auto* bytes = static_cast<const uint8_t*>(data);
   const char* name = name_from_magic(bytes, byte_count);
-  const auto reader = ImageInput::create(name);
-  if (!reader) throw std::runtime_error(tidy(OIIO::geterror(), "the format is not known"));
-  if (!reader->supports("ioproxy")) {
+  OIIO::Filesystem::IOMemReader memory(data, byte_count);
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  auto input = ImageInput::create(name, false, nullptr, proxy);
+  if (!input) throw std::runtime_error(tidy(OIIO::geterror(), "the format is not known"));
+  if (!input->supports("ioproxy")) {
     read_through_file(bytes, byte_count, name, image);
     return;
   }
-  const ImageSpec config = straight_alpha_wanted();
-  OIIO::Filesystem::IOMemReader memory(data, byte_count);
-  decode_or_free(ImageInput::open(name, &config, &memory), image);
+  ImageSpec config = straight_alpha_wanted();
+  config.attribute("oiio:ioproxy", TypeDesc::PTR, &proxy);  // where there is a config, it decides
+  ImageSpec spec;
+  if (!input->open(name, spec, config)) {
+    throw std::runtime_error(tidy(input->geterror(), "the file is damaged"));
+  }
+  decode_or_free(std::move(input), image);
 }
 
 void free_image(KestrelPluginImage* image) {

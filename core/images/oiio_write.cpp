@@ -48,12 +48,12 @@ std::string channel_name(const KestrelPluginLayer& layer, char letter) {
   return std::string(layer.name) + "." + letter;
 }
 
-/// A writer into `memory` for files like `path`, opened with `spec`.
-std::unique_ptr<ImageOutput> open_writer(const std::string& path, const ImageSpec& spec,
+/// A writer into `memory`, of the format that the ending of `name` says.
+std::unique_ptr<ImageOutput> open_writer(const char* name, const ImageSpec& spec,
                                          OIIO::Filesystem::IOVecOutput& memory) {
-  auto output = ImageOutput::create("image" + lower_extension(path));
+  auto output = ImageOutput::create(name);
   if (!output) throw std::runtime_error(tidy(OIIO::geterror(), "the format is not known"));
-  if (!output->set_ioproxy(&memory) || !output->open("image" + lower_extension(path), spec)) {
+  if (!output->set_ioproxy(&memory) || !output->open(name, spec)) {
     throw std::runtime_error(tidy(output->geterror(), "the encoder did not start"));
   }
   return output;
@@ -130,20 +130,18 @@ void encode_pixel(const float* from, size_t channels, uint8_t* to) {
   if (has_alpha) to[3] = static_cast<uint8_t>(std::lround(255.0f * alpha));
 }
 
-std::vector<unsigned char> encode_8bit(const std::string& path, int width, int height,
-                                       const KestrelPluginLayer& layer) {
+std::vector<unsigned char> encode_png(int width, int height, const KestrelPluginLayer& layer) {
   const size_t channels = std::strlen(layer.channels);
   if (channels != 1 && channels != 3 && channels != 4) {
-    throw std::runtime_error("this format takes 1, 3 or 4 channels; use .exr");
+    throw std::runtime_error("PNG takes layers of 1, 3 or 4 channels; use .exr");
   }
   ImageSpec spec(width, height, static_cast<int>(channels), TypeDesc::UINT8);
   if (channels == 4) spec.alpha_channel = 3;
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("DateTime", "");
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
-  const auto output = open_writer(path, spec, memory);
+  const auto output = open_writer("image.png", spec, memory);
   const size_t row_pixels = static_cast<size_t>(width);
   std::vector<uint8_t> rows(kRowsAtOnce * row_pixels * channels);
   for (int y = 0; y < height; y += kRowsAtOnce) {
@@ -217,9 +215,8 @@ void write_file(const char* path, int width, int height, const KestrelPluginLaye
   const std::string extension = lower_extension(path);
   if (extension == ".exr") {
     save(path, encode_exr(width, height, layers, layer_count));
-  } else if (extension == ".png" || extension == ".jpg" || extension == ".jpeg" ||
-             extension == ".tif" || extension == ".tiff") {
-    save(path, encode_8bit(path, width, height, layers[0]));
+  } else if (extension == ".png") {
+    save(path, encode_png(width, height, layers[0]));
   } else {
     throw std::runtime_error("its ending '" + extension + "' is not known; use .exr or .png");
   }
