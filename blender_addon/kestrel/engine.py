@@ -5,7 +5,10 @@ Blender calls update() with its data locked and then render(), once for each vie
 that is read from Blender is read in update().
 """
 
+import contextlib
+import sys
 import threading
+import traceback
 
 import bpy
 from bpy.app.handlers import persistent
@@ -37,7 +40,7 @@ class Frame(threading.Thread):
     def run(self):
         try:
             self._session.render(*self._size, self._progress)
-        except capi.KestrelError as error:
+        except Exception as error:  # raised again on Blender's thread
             self.error = error
 
     def cancel(self):
@@ -60,30 +63,19 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
         self._session = None
         self._key = session_key(depsgraph.scene, depsgraph.view_layer)
         self.update_stats("", "Reading the scene")
-        with log.collecting() as messages:
-            try:
-                target = session.acquire(self._key)
-                self._size = sync.export_depsgraph(
-                    target, depsgraph, self._camera(depsgraph), log.warning)
-                self._session = target
-            except capi.KestrelError as error:
-                session.drop(self._key)
-                self._fail(str(error))
-        self._report(messages)
+        with self._reporting():
+            target = session.acquire(self._key)
+            self._size = sync.export_depsgraph(
+                target, depsgraph, self._camera(depsgraph), log.warning)
+            self._session = target
 
     def render(self, depsgraph):
         if self._session is None:
             return
-        with log.collecting() as messages:
-            try:
-                self._render_frame()
-                if not self.test_break():
-                    self._write_result(depsgraph.view_layer)
-            except capi.Cancelled:
-                pass
-            except capi.KestrelError as error:
-                self._fail(str(error))
-        self._report(messages)
+        with self._reporting():
+            self._render_frame()
+            if not self.test_break():
+                self._write_result(depsgraph.view_layer)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)
@@ -112,15 +104,34 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
         compat.write_passes(result.layers[0], passes.reader(self._session.renderer, *self._size))
         self.end_result(result)
 
+    @contextlib.contextmanager
+    def _reporting(self):
+        """Tell the artist what goes wrong in this block, and start afresh the next time.
+
+        No exception may leave it: its traceback would keep objects of the depsgraph alive, which
+        Blender is about to free.
+        """
+        with log.collecting() as messages:
+            try:
+                yield
+            except capi.Cancelled:
+                pass
+            except capi.KestrelError as error:
+                self._fail(str(error))
+            except Exception as error:
+                traceback.print_exc(file=sys.stdout)
+                self._fail(f"Kestrel made a mistake ({type(error).__name__}: {error}). Please "
+                           "report it with the lines above this one in the terminal.")
+        for text in messages:
+            self.report({"WARNING"}, text)
+
     def _fail(self, text):
         """Say it wherever the artist may look: status bar, image editor, terminal."""
+        session.drop(self._key)
+        self._session = None
         log.error(text)
         self.report({"ERROR"}, text)
         self.error_set(text)
-
-    def _report(self, messages):
-        for text in messages:
-            self.report({"WARNING"}, text)
 
 
 @persistent

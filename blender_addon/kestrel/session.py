@@ -22,12 +22,13 @@ def stable_id(text):
 
 
 def digest(*arrays):
-    """Fingerprint of arrays and None."""
+    """Fingerprint of contiguous arrays, bytes and None."""
     state = hashlib.blake2b(digest_size=16)
     for array in arrays:
-        state.update(b"-" if array is None else f"{array.dtype}{array.shape}".encode())
-        if array is not None:
-            state.update(array)
+        view = None if array is None else memoryview(array)
+        state.update(f"{view and (view.format, view.shape)}".encode())
+        if view is not None and view.nbytes:
+            state.update(view.cast("B"))
     return state.digest()
 
 

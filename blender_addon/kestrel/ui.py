@@ -5,7 +5,6 @@ import textwrap
 
 import bpy
 
-from . import properties
 from .native import loader
 
 ENGINE = "KESTREL"

@@ -212,6 +212,14 @@ def pointer(array, kind, dtype):
     return array.ctypes.data_as(kind)
 
 
+def content(item):
+    """What a struct says, comparable between structs; its only pointer is the name."""
+    name, item.name = item.name, None
+    data = bytes(item)
+    item.name = name
+    return name, data
+
+
 class Library:
     """The loaded library, its version checked."""
 

@@ -365,7 +365,7 @@ def sync_material(export, material):
         surface = read_surface(material, export.environment_ior, export.warn)
         item = describe(export, material, surface)
         ident = export.new_id(capi.KIND_MATERIAL, key)
-        export.put(capi.KIND_MATERIAL, ident, (item.name, bytes(item)),
+        export.put(capi.KIND_MATERIAL, ident, capi.content(item),
                    lambda: export.scene.set_material(ident, item))
         export.materials[key] = ident
     return export.materials[key]

@@ -29,10 +29,9 @@ class Texture:
 
 @dataclass(frozen=True)
 class Value:
-    """A colour times the texture's colour, or its alpha."""
+    """A colour times the texture's colour."""
     color: tuple = BLACK
     texture: Texture = None
-    from_alpha: bool = False
 
     def scaled(self, factor):
         """Times a number or a colour; black has no texture."""
@@ -140,10 +139,8 @@ class Reader:
             return Value(constant(origin.default_value))
         if node.type in ("RGB", "VALUE"):
             return Value(constant(node.outputs[0].default_value))
-        if node.type == "TEX_IMAGE":
-            if node.image is None:
-                return Value(BLACK)
-            return Value(WHITE, self.texture(node, above), origin.name == "Alpha")
+        if node.type == "TEX_IMAGE" and origin.name == "Color":
+            return Value(WHITE, self.texture(node, above)) if node.image else Value(BLACK)
         if node.type in ("MIX_RGB", "MIX"):
             mixed = self._mixed_color(node, above)
             if mixed is not None:
@@ -235,8 +232,8 @@ class Reader:
 def sum_values(a, b):
     """a + b. Exact unless both have different textures: then the brighter one's is kept and the
     other joins as a constant of mean grey (half)."""
-    if a.texture == b.texture and a.from_alpha == b.from_alpha:
-        return Value(tuple(x + y for x, y in zip(a.color, b.color)), a.texture, a.from_alpha)
+    if a.texture == b.texture:
+        return Value(tuple(x + y for x, y in zip(a.color, b.color)), a.texture)
     if not any(a.color):
         return b
     if not any(b.color):

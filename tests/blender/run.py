@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the add-on's tests inside Blender, with the add-on of this checkout.
+
+    python3 tests/blender/run.py [--build build] [NAME ...]     NAME: camera for test_camera.py
+    python3 tests/blender/run.py --list
+    blender -b --factory-startup --python tests/blender/run.py -- [NAME ...]
+
+The library is the build folder's, or that of KESTREL_LIBRARY; the Blender is that of
+KESTREL_BLENDER, or `blender`. Without a Blender the tests are skipped (exit status 77).
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+REPOSITORY = HERE.parents[1]
+SKIPPED = 77
+
+
+def names():
+    return sorted(path.stem.removeprefix("test_") for path in HERE.glob("test_*.py"))
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="run.py", description=__doc__.split("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", choices=names() + [[]])
+    parser.add_argument("--list", action="store_true", help="print the names, one a line")
+    parser.add_argument("--build", type=Path, default=REPOSITORY / "build",
+                        help="folder with libkestrel.so")
+    return parser.parse_args(arguments)
+
+
+def run_outside(args):
+    """Start Blender with this very script; returns the exit status."""
+    blender = shutil.which(os.environ.get("KESTREL_BLENDER", "blender"))
+    if blender is None:
+        print("SKIP: Blender is not installed (KESTREL_BLENDER may name one)")
+        return SKIPPED
+    environment = dict(os.environ)
+    environment.setdefault("KESTREL_LIBRARY", str(args.build.resolve() / "libkestrel.so"))
+    environment["KESTREL_TEST_BLENDER"] = blender
+    return subprocess.run(
+        [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "--python",
+         str(HERE / "run.py"), "--", *args.names], env=environment, check=False).returncode
+
+
+def run_inside(args):
+    """Run the tests in this Blender; returns whether all passed."""
+    import addon_utils
+    sys.dont_write_bytecode = True
+    sys.path[:0] = [str(HERE), str(REPOSITORY / "blender_addon"), str(REPOSITORY / "tests/parity")]
+    # As the user would; the module is found on the path instead of in the add-ons folder.
+    if addon_utils.enable("kestrel", default_set=True) is None:
+        print("the add-on did not start; the reason stands above")
+        return False
+    suite = unittest.defaultTestLoader.loadTestsFromNames(
+        [f"test_{name}" for name in args.names or names()])
+    return unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(suite).wasSuccessful()
+
+
+def main():
+    if "bpy" in sys.modules:
+        own = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+        sys.exit(0 if run_inside(parse(own)) else 1)
+    args = parse(sys.argv[1:])
+    if args.list:
+        print("\n".join(names()))
+        return
+    sys.exit(run_outside(args))
+
+
+if __name__ == "__main__":
+    main()

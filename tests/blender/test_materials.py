@@ -1,0 +1,391 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes as the paper's Table 1, and as pictures."""
+
+import math
+import unittest
+
+import bpy
+import numpy as np
+from kestrel.sync import material as sync_material
+from kestrel.sync.material import read_surface
+from mathutils import Matrix
+from support import (SceneTest, diffuse, emission, image, new_material, shader_material, textured)
+
+GLOSSY = "ShaderNodeBsdfGlossy"
+try:
+    bpy.data.materials.new("Probe").use_nodes = True
+    bpy.data.materials["Probe"].node_tree.nodes.new(GLOSSY)
+except RuntimeError:
+    GLOSSY = "ShaderNodeBsdfAnisotropic"
+
+
+def read(material, warnings=None, environment_ior=1.0):
+    said = [] if warnings is None else warnings
+    return read_surface(material, environment_ior, said.append)
+
+
+def principled(name, **inputs):
+    """Principled BSDF; names of either generation of sockets."""
+    material, tree, output = new_material(name)
+    node = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    renamed = {"Specular": "Specular IOR Level", "Transmission": "Transmission Weight",
+               "Emission": "Emission Color"}
+    for key, value in inputs.items():
+        key = key.replace("_", " ")
+        socket = node.inputs[renamed[key] if renamed.get(key, "") in node.inputs else key]
+        socket.default_value = (*value, 1.0) if isinstance(value, tuple) else value
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def checker(name="Checker", alpha=False):
+    """4 x 4: left half red, right half green; with alpha the upper half is a hole."""
+    pixels = np.ones((4, 4, 4), np.float32)
+    pixels[:, :2, :3], pixels[:, 2:, :3] = (1, 0, 0), (0, 1, 0)
+    if alpha:
+        pixels[2:, :, 3] = 0.0
+    return image(name, pixels, non_color=True)
+
+
+class TableTest(SceneTest):
+    """Single shaders."""
+
+    def close(self, actual, expected):
+        np.testing.assert_allclose(actual, expected, rtol=1e-4, atol=1e-6)
+
+    def test_diffuse(self):
+        surface = read(diffuse("D", (0.1, 0.2, 0.3)))
+        self.close(surface.diffuse.color, (0.1, 0.2, 0.3))
+        self.close(surface.ambient.color, (0.1, 0.2, 0.3))
+        self.assertEqual((surface.reflectivity, surface.opacity), (0.0, 1.0))
+        self.assertEqual(surface.specular, (0, 0, 0))
+
+    def test_mirror(self):
+        surface = read(shader_material("M", GLOSSY, Color=(0.5, 0.4, 0.2), Roughness=0.0))
+        self.close(surface.reflectivity, 0.5)
+        self.close(surface.reflection_color, (1.0, 0.8, 0.4))
+        self.assertEqual(surface.diffuse.color, (0, 0, 0))
+        self.assertEqual(surface.specular, (0, 0, 0))
+
+    def test_rough_metal(self):
+        surface = read(shader_material("R", GLOSSY, Color=(0.5, 0.5, 0.5), Roughness=0.5))
+        self.close(surface.reflectivity, 0.125)
+        self.close(surface.exponent, 30.0)          # 2 / 0.5⁴ - 2
+        self.close(surface.specular, [0.375 * 4.0] * 3)  # the rest, times (30 + 2) / 8
+        self.close(surface.ambient.color, [0.375] * 3)
+
+    def test_glass(self):
+        surface = read(shader_material("G", "ShaderNodeBsdfGlass", Color=(1.0, 0.5, 0.25),
+                                       IOR=1.5, Roughness=0.0))
+        self.assertEqual((surface.opacity, surface.ior), (0.0, 1.5))
+        self.close(surface.reflectivity, 0.04)
+        self.close(surface.transmission_color, (1.0, 0.5, 0.25))
+        self.assertEqual(surface.diffuse.color, (0, 0, 0))
+
+    def test_transparent_has_the_index_of_the_surroundings(self):
+        surface = read(shader_material("T", "ShaderNodeBsdfTransparent", Color=(0.5, 1.0, 1.0)),
+                       environment_ior=1.33)
+        self.assertEqual((surface.opacity, surface.reflectivity), (0.0, 0.0))
+        self.close(surface.ior, 1.33)
+        self.close(surface.transmission_color, (0.5, 1.0, 1.0))
+
+    def test_emission(self):
+        surface = read(emission("E", (0.5, 0.25, 1.0), 4.0))
+        self.close(surface.emission.color, (2.0, 1.0, 4.0))
+        self.assertEqual(surface.diffuse.color, (0, 0, 0))
+
+    def test_principled_plastic(self):
+        surface = read(principled("P", Base_Color=(0.2, 0.4, 0.6), Roughness=0.5, Specular=0.5,
+                                  Metallic=0.0, IOR=1.5))
+        self.close(surface.diffuse.color, (0.2, 0.4, 0.6))
+        self.close(surface.specular, [0.04 * 4.0] * 3)
+        self.assertEqual(surface.reflectivity, 0.0)
+        self.assertEqual(surface.opacity, 1.0)
+
+    def test_principled_metal(self):
+        surface = read(principled("P", Base_Color=(0.8, 0.4, 0.2), Roughness=0.0, Metallic=1.0))
+        self.assertEqual(surface.diffuse.color, (0, 0, 0))
+        self.close(surface.reflectivity, 0.8)
+        self.close(surface.reflection_color, (1.0, 0.5, 0.25))
+
+    def test_principled_half_metal(self):
+        surface = read(principled("P", Base_Color=(0.8, 0.8, 0.8), Roughness=0.0, Metallic=0.5))
+        self.close(surface.diffuse.color, [0.4] * 3)
+        self.close(surface.reflectivity, 0.4)
+
+    def test_principled_glass(self):
+        surface = read(principled("P", Base_Color=(1.0, 0.5, 0.5), Roughness=0.0,
+                                  Transmission=0.75, IOR=1.5))
+        self.close(surface.opacity, 0.25)
+        self.close(surface.ior, 1.5)
+        self.close(surface.transmission_color, (1.0, 0.5, 0.5))
+        self.close(surface.diffuse.color, (0.25, 0.125, 0.125))
+
+    def test_principled_emission_and_alpha(self):
+        surface = read(principled("P", Emission=(1.0, 0.5, 0.0), Emission_Strength=2.0, Alpha=0.3))
+        self.close(surface.emission.color, (2.0, 1.0, 0.0))
+        self.close(surface.alpha, 0.3)
+        self.assertFalse(surface.masked)
+
+    def test_without_nodes(self):
+        material = bpy.data.materials.new("Plain")
+        if not material.use_nodes:
+            material.diffuse_color = (0.1, 0.2, 0.3, 1.0)
+            self.close(read(material).diffuse.color, (0.1, 0.2, 0.3))
+
+    def test_without_a_shader(self):
+        material, _, _ = new_material("Nothing")
+        self.assertEqual(read(material), sync_material.Surface())
+
+
+class GraphTest(SceneTest):
+    """Several nodes."""
+
+    def mixed(self, first, second, factor=None, kind="ShaderNodeMixShader"):
+        material, tree, output = new_material("Mixed")
+        mix = tree.nodes.new(kind)
+        sockets = mix.inputs[1:] if factor is not None else mix.inputs
+        made = []
+        for socket, (shader, inputs) in zip(sockets, (first, second)):
+            node = tree.nodes.new(shader)
+            for name, value in inputs.items():
+                node.inputs[name].default_value = value
+            tree.links.new(node.outputs[0], socket)
+            made.append(node)
+        if factor is not None:
+            mix.inputs[0].default_value = factor
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        return material, tree, mix, made
+
+    def test_mix(self):
+        material, *_ = self.mixed(("ShaderNodeBsdfDiffuse", {"Color": (1, 0, 0, 1)}),
+                                  (GLOSSY, {"Color": (0.8, 0.8, 0.8, 1), "Roughness": 0.0}), 0.25)
+        surface = read(material)
+        np.testing.assert_allclose(surface.diffuse.color, (0.75, 0, 0))
+        self.assertAlmostEqual(surface.reflectivity, 0.2, 5)
+
+    def test_mix_with_transparent(self):
+        material, *_ = self.mixed(("ShaderNodeBsdfTransparent", {}),
+                                  ("ShaderNodeBsdfDiffuse", {"Color": (1, 1, 1, 1)}), 0.25)
+        surface = read(material)
+        self.assertAlmostEqual(surface.opacity, 0.25, 5)
+        np.testing.assert_allclose(surface.diffuse.color, [0.25] * 3)
+
+    def test_add(self):
+        material, *_ = self.mixed(("ShaderNodeBsdfDiffuse", {"Color": (0.5, 0, 0, 1)}),
+                                  ("ShaderNodeEmission", {"Color": (0, 1, 0, 1)}),
+                                  kind="ShaderNodeAddShader")
+        surface = read(material)
+        np.testing.assert_allclose(surface.diffuse.color, (0.5, 0, 0))
+        np.testing.assert_allclose(surface.emission.color, (0, 1, 0))
+
+    def test_mask_by_mix(self):
+        """Transparent and Diffuse mixed by the alpha of the image that colours."""
+        material, tree, mix, made = self.mixed(("ShaderNodeBsdfTransparent", {}),
+                                               ("ShaderNodeBsdfDiffuse", {}), 0.5)
+        node = tree.nodes.new("ShaderNodeTexImage")
+        node.image = checker(alpha=True)
+        tree.links.new(node.outputs["Color"], made[1].inputs["Color"])
+        tree.links.new(node.outputs["Alpha"], mix.inputs[0])
+        surface = read(material)
+        self.assertTrue(surface.masked)
+        self.assertEqual(surface.diffuse.texture.image, node.image)
+        np.testing.assert_allclose(surface.diffuse.color, (1, 1, 1))
+
+    def test_alpha_of_another_image_is_reported(self):
+        material = principled("P")
+        tree = material.node_tree
+        node = next(n for n in tree.nodes if n.type == "BSDF_PRINCIPLED")
+        for name, output, socket in (("A", "Color", "Base Color"), ("B", "Alpha", "Alpha")):
+            texture = tree.nodes.new("ShaderNodeTexImage")
+            texture.image = checker(name, alpha=True)
+            tree.links.new(texture.outputs[output], node.inputs[socket])
+        warnings = []
+        self.assertFalse(read(material, warnings).masked)
+        self.assertRegex(warnings[0], "Material 'P': .*'B'")
+
+    def test_groups_reroutes_and_muted_nodes_are_seen_through(self):
+        inner = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
+        if hasattr(inner, "interface"):
+            inner.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+            inner.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+        else:
+            inner.inputs.new("NodeSocketColor", "Tint")
+            inner.outputs.new("NodeSocketShader", "Shader")
+        start, end = inner.nodes.new("NodeGroupInput"), inner.nodes.new("NodeGroupOutput")
+        shader, gamma = inner.nodes.new("ShaderNodeBsdfDiffuse"), inner.nodes.new("ShaderNodeGamma")
+        gamma.mute = True
+        inner.links.new(start.outputs[0], gamma.inputs[0])
+        inner.links.new(gamma.outputs[0], shader.inputs[0])
+        inner.links.new(shader.outputs[0], end.inputs[0])
+        material, tree, output = new_material("Group")
+        group, reroute = tree.nodes.new("ShaderNodeGroup"), tree.nodes.new("NodeReroute")
+        group.node_tree = inner
+        color = tree.nodes.new("ShaderNodeRGB")
+        color.outputs[0].default_value = (0.25, 0.5, 1.0, 1.0)
+        tree.links.new(color.outputs[0], reroute.inputs[0])
+        tree.links.new(reroute.outputs[0], group.inputs[0])
+        tree.links.new(group.outputs[0], output.inputs["Surface"])
+        warnings = []
+        np.testing.assert_allclose(read(material, warnings).diffuse.color, (0.25, 0.5, 1.0))
+        self.assertEqual(warnings, [])
+
+    def test_image_times_colour(self):
+        material, tree, output = new_material("Product")
+        shader, texture = (tree.nodes.new(f"ShaderNode{kind}") for kind in
+                           ("BsdfDiffuse", "TexImage"))
+        texture.image = checker()
+        mix = tree.nodes.new("ShaderNodeMixRGB")
+        mix.blend_type = "MULTIPLY"
+        mix.inputs[0].default_value = 1.0
+        mix.inputs[2].default_value = (0.5, 0.25, 1.0, 1.0)
+        tree.links.new(texture.outputs["Color"], mix.inputs[1])
+        tree.links.new(mix.outputs[0], shader.inputs["Color"])
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        warnings = []
+        surface = read(material, warnings)
+        np.testing.assert_allclose(surface.diffuse.color, (0.5, 0.25, 1.0))
+        self.assertEqual(surface.diffuse.texture.image, texture.image)
+        self.assertEqual(warnings, [])
+
+    def test_unsupported_nodes_are_named(self):
+        material, tree, output = new_material("Odd")
+        shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        noise = tree.nodes.new("ShaderNodeTexNoise")
+        noise.label = "My noise"
+        shader.inputs["Color"].default_value = (0.1, 0.2, 0.3, 1.0)
+        tree.links.new(noise.outputs["Color"], shader.inputs["Color"])
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        warnings = []
+        np.testing.assert_allclose(read(material, warnings).diffuse.color, (0.1, 0.2, 0.3),
+                                   rtol=1e-5)
+        self.assertEqual(len(warnings), 1)
+        self.assertRegex(warnings[0], "Material 'Odd': node 'My noise' .Noise Texture. is not "
+                                      "supported; the colour .0.1, 0.2, 0.3. is used instead")
+
+    def test_image_behind_an_unsupported_node_is_used(self):
+        material, tree, output = new_material("Curves")
+        shader, curves, texture = (tree.nodes.new(f"ShaderNode{kind}") for kind in
+                                   ("BsdfDiffuse", "RGBCurve", "TexImage"))
+        texture.image = checker()
+        tree.links.new(texture.outputs["Color"], curves.inputs["Color"])
+        tree.links.new(curves.outputs["Color"], shader.inputs["Color"])
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        warnings = []
+        self.assertEqual(read(material, warnings).diffuse.texture.image, texture.image)
+        self.assertRegex(warnings[0], "RGB Curves.*the image 'Checker' is used as it is")
+
+    def test_mapping(self):
+        material, texture = textured("Mapped", checker(), "ShaderNodeBsdfDiffuse")
+        mapping = material.node_tree.nodes.new("ShaderNodeMapping")
+        mapping.inputs["Scale"].default_value = (2, 3, 1)
+        mapping.inputs["Location"].default_value = (0.25, 0.5, 0)
+        material.node_tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+        found = read(material).diffuse.texture
+        self.assertEqual((found.tiling, found.offset), ((2, 3), (0.25, 0.5)))
+        mapping.vector_type = "TEXTURE"
+        found = read(material).diffuse.texture
+        np.testing.assert_allclose((*found.tiling, *found.offset), (1 / 2, 1 / 3, -1 / 8, -1 / 6),
+                                   rtol=1e-6)
+
+    def test_cyclic_groups_end(self):
+        a = bpy.data.node_groups.new("Loop", "ShaderNodeTree")
+        nodes = [a.nodes.new("ShaderNodeMixShader") for _ in range(2)]
+        a.links.new(nodes[0].outputs[0], nodes[1].inputs[1])
+        a.links.new(nodes[1].outputs[0], nodes[0].inputs[1])
+        material, tree, output = new_material("Cycle")
+        mixes = [tree.nodes.new("ShaderNodeMixShader") for _ in range(2)]
+        tree.links.new(mixes[0].outputs[0], mixes[1].inputs[1])
+        tree.links.new(mixes[1].outputs[0], mixes[0].inputs[1])
+        tree.links.new(mixes[1].outputs[0], output.inputs["Surface"])
+        self.assertEqual(read(material).diffuse.color, (0, 0, 0))
+
+
+class PictureTest(SceneTest):
+    """Materials beside Cycles and known answers."""
+
+    def setUp(self):
+        super().setUp()
+        self.camera((0, 0, 9), ortho_scale=4.0)
+
+    def test_texture_lies_as_in_cycles(self):
+        pixels = np.random.default_rng(1).random((8, 8, 4)).astype(np.float32)
+        pixels[..., 3] = 1.0
+        for settings in ({}, {"extension": "EXTEND"}, {"extension": "CLIP"},
+                         {"interpolation": "Closest"}):
+            with self.subTest(**settings):
+                material, texture = textured("T", image("Noise", pixels, non_color=True),
+                                             **settings)
+                mapping = material.node_tree.nodes.new("ShaderNodeMapping")
+                mapping.inputs["Scale"].default_value = (1.5, 1.25, 1)
+                mapping.inputs["Location"].default_value = (-0.2, 0.1, 0)
+                coordinates = material.node_tree.nodes.new("ShaderNodeTexCoord")
+                material.node_tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+                material.node_tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+                plane = self.plane("Plane", 4, material)
+                self.scene.kestrel.samples = 64
+                self.scene.kestrel.pixel_filter = "box"
+                self.scene.kestrel.filter_width = 1.0
+                error = np.abs(self.render() - self.render_cycles(256))[..., :3]
+                self.assertLess(error.mean(), 0.01)
+                bpy.data.objects.remove(plane)
+
+    def test_mask_cuts_holes(self):
+        material = principled("Leaf", Specular=0.0, Roughness=1.0)
+        tree = material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image, texture.interpolation = checker(alpha=True), "Closest"
+        node = next(n for n in tree.nodes if n.type == "BSDF_PRINCIPLED")
+        tree.links.new(texture.outputs["Color"], node.inputs["Base Color"])
+        tree.links.new(texture.outputs["Alpha"], node.inputs["Alpha"])
+        self.plane("Leaf", 4, material)
+        self.plane("Behind", 8, emission("Blue", (0, 0, 1)), Matrix.Translation((0, 0, -1)))
+        self.light("SUN", math.pi)
+        picture = self.render()
+        self.assert_color(picture[24, 8], (1, 0, 0), 1e-2)
+        self.assert_color(picture[24, 24], (0, 1, 0), 1e-2)
+        self.assert_color(picture[8, 8], (0, 0, 1))
+
+    def test_mirror_shows_what_is_opposite(self):
+        self.plane("Mirror", 4, shader_material("M", GLOSSY, Color=(1, 1, 1), Roughness=0.0))
+        self.plane("Ceiling", 40, emission("Sky", (0.2, 0.4, 0.8)), Matrix.Translation((0, 0, 20)))
+        self.assert_color(self.render()[16, 16], (0.2, 0.4, 0.8))
+
+    def test_constant_alpha_lets_the_rest_through(self):
+        self.plane("Film", 4, principled("Film", Base_Color=(0, 0, 0), Specular=0.0, Alpha=0.25))
+        self.plane("Behind", 8, emission("White", (1, 1, 1)), Matrix.Translation((0, 0, -1)))
+        self.assert_color(self.render()[16, 16], 0.75)
+
+    def test_normal_map_tilts_the_light(self):
+        angle = math.radians(40)
+        pixels = np.ones((4, 4, 4), np.float32)
+        pixels[..., :3] = (0.5 + 0.5 * math.sin(angle), 0.5, 0.5 + 0.5 * math.cos(angle))
+        material, tree, output = new_material("Bumpy")
+        shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        shader.inputs["Color"].default_value = (1, 1, 1, 1)
+        texture, normal = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeNormalMap")
+        texture.image = image("Tilt", pixels, non_color=True)
+        tree.links.new(texture.outputs["Color"], normal.inputs["Color"])
+        tree.links.new(normal.outputs["Normal"], shader.inputs["Normal"])
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        self.plane("Plane", 4, material)
+        self.light("SUN", math.pi)
+        self.assert_color(self.render()[16, 16], math.cos(angle), 1e-2)
+
+    def test_material_that_casts_no_shadow(self):
+        white = diffuse("White", (1, 1, 1))
+        self.plane("Floor", 4, white)
+        self.plane("Above", 4, diffuse("Above", (1, 1, 1)), Matrix.Translation((0, 0, 3)))
+        self.scene.camera.matrix_world.translation.z = 2.0
+        self.light("SUN", math.pi)
+        self.assert_color(self.render()[16, 16], 0.0)
+        bpy.data.materials["Above"].kestrel.casts_shadow = False
+        self.assert_color(self.render()[16, 16], 1.0)
+
+
+class HighlightTest(unittest.TestCase):
+    def test_peak_is_the_microfacet_models(self):
+        """F0 / (4 r⁴) at normal incidence, GGX and Fresnel of Cycles."""
+        for roughness in (0.4, 0.6, 0.9):
+            specular, exponent = sync_material.highlight((0.04,) * 3, roughness)
+            self.assertAlmostEqual(specular[0], 0.04 / (4 * roughness ** 4), 4 if exponent > 1 else 1)
