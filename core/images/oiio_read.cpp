@@ -52,6 +52,7 @@ Channels find_channels(const ImageSpec& spec) {
     const std::string layer = name.substr(0, name.size() - 1);
     const char* const letters[] = {"R", "G", "B", "A"};
     for (int i = 0; i < 4; ++i) out.rgba[i] = find(layer + letters[i]);
+    if (out.rgba[1] < 0 && out.rgba[2] < 0) out.rgba[1] = out.rgba[2] = out.rgba[0];
     return out;
   }
   std::vector<int> colors;
