@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -38,6 +39,18 @@ void expect_known_format(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::file_size(path, ignored) > kMaximumModelBytes) {
     throw std::runtime_error(fmt::format("'{}' is larger than 4 GiB", path));
+  }
+}
+
+/// assimp's PLY reader never returns from a file that ends inside its header.
+void expect_whole_ply_header(const std::string& path) {
+  constexpr size_t kLongestHeader = 65536;
+  std::ifstream stream(path, std::ios::binary);
+  std::string header(kLongestHeader, '\0');
+  stream.read(header.data(), static_cast<std::streamsize>(header.size()));
+  header.resize(static_cast<size_t>(stream.gcount()));
+  if (header.find("end_header") == std::string::npos) {
+    throw std::runtime_error(fmt::format("'{}' cannot be read: its PLY header has no end", path));
   }
 }
 
@@ -141,6 +154,7 @@ const aiScene& import_file(Assimp::Importer& importer, const std::string& path) 
 
 Model read_model(const std::string& path, UpAxis up) {
   expect_known_format(path);
+  if (lower_extension(path) == ".ply") expect_whole_ply_header(path);
   Assimp::Importer importer;
   const aiScene& scene = import_file(importer, path);
   Model model;

@@ -63,8 +63,9 @@ UpAxis parse_up(const JsonNode& parent) {
 }
 
 mat3 rotation_from_degrees(const vec3& degrees) {
-  const vec3 r = glm::radians(degrees);
-  const vec3 c = glm::cos(r), s = glm::sin(r);
+  // In double: a quarter turn of something large stays flat.
+  const glm::dvec3 r = glm::radians(glm::dvec3(degrees));
+  const vec3 c(glm::cos(r)), s(glm::sin(r));
   const mat3 x(1, 0, 0, 0, c.x, s.x, 0, -s.x, c.x);
   const mat3 y(c.y, 0, -s.y, 0, 1, 0, s.y, 0, c.y);
   const mat3 z(c.z, s.z, 0, -s.z, c.z, 0, 0, 0, 1);
