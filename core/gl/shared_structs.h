@@ -42,7 +42,7 @@ static_assert(offsetof(GpuMaterial, optical) == 64);
 static_assert(offsetof(GpuMaterial, alpha_mode) == 76);
 static_assert(offsetof(GpuMaterial, tiling) == 80);
 static_assert(offsetof(GpuMaterial, offset) == 88);
-static_assert(offsetof(GpuMaterial, has_normal_texture) == 96);
+static_assert(offsetof(GpuMaterial, textures) == 96);
 
 static_assert(sizeof(GpuLight) == 64);
 static_assert(offsetof(GpuLight, cos_outer) == 12);

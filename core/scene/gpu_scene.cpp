@@ -35,6 +35,12 @@ std::vector<PaddedObject> pack_objects(const Scene& scene) {
   return out;
 }
 
+/// A material's textures by texture unit, as shaders/raster/material.glsl binds them.
+std::array<int, 6> textures_of(const Material& m) {
+  return {m.emission_texture, m.ambient_texture, m.diffuse_texture,
+          m.specular_texture, m.normal_texture,  m.optical_texture};
+}
+
 gpu::GpuMaterial pack(const Material& m) {
   gpu::GpuMaterial out{};
   out.emission = m.emission;
@@ -47,7 +53,10 @@ gpu::GpuMaterial pack(const Material& m) {
   out.alpha_mode = static_cast<uint32_t>(m.alpha_mode);
   out.tiling = m.tiling;
   out.offset = m.offset;
-  out.has_normal_texture = m.normal_texture != kNone;
+  const std::array<int, 6> textures = textures_of(m);
+  for (size_t unit = 0; unit < textures.size(); ++unit) {
+    if (textures[unit] != kNone) out.textures |= 1u << unit;
+  }
   return out;
 }
 
@@ -133,18 +142,12 @@ void GpuScene::bind_materials_and_lights() const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, lights_.name());
 }
 
-void GpuScene::bind_texture(GLuint unit, int index, GLuint sampler) const {
-  glBindTextureUnit(unit, index == kNone ? white_.name() : texture(index).name());
-  glBindSampler(unit, sampler);
-}
-
-void GpuScene::bind_material_textures(const Material& m) const {
-  const std::array<int, 6> textures = {m.emission_texture, m.ambient_texture, m.diffuse_texture,
-                                       m.specular_texture, m.normal_texture,  m.optical_texture};
+void GpuScene::bind_material_textures(const Material& material) const {
+  const std::array<int, 6> textures = textures_of(material);
   for (GLuint unit = 0; unit < textures.size(); ++unit) {
-    const int index = textures[unit];
-    bind_texture(unit, index,
-                 index == kNone ? 0 : samplers_.for_material(*scene_->textures[index]));
+    if (textures[unit] == kNone) continue;
+    glBindTextureUnit(unit, texture(textures[unit]).name());
+    glBindSampler(unit, samplers_.for_material(*scene_->textures[textures[unit]]));
   }
 }
 
@@ -152,13 +155,16 @@ void GpuScene::bind_world_textures(GLuint first_unit) const {
   const World& world = scene_->world;
   for (GLuint face = 0; face < 6; ++face) {
     const int index = world.kind == WorldKind::color ? kNone : world.textures[face];
-    GLuint sampler = 0;
-    if (index != kNone) {
-      const Texture& texture = *scene_->textures[index];
-      sampler = world.kind == WorldKind::cube ? samplers_.for_cube_face(texture)
-                                              : samplers_.for_equirectangular(texture);
+    if (index == kNone) {
+      glBindTextureUnit(first_unit + face, white_.name());
+      glBindSampler(first_unit + face, 0);
+      continue;
     }
-    bind_texture(first_unit + face, index, sampler);
+    const Texture& source = *scene_->textures[index];
+    glBindTextureUnit(first_unit + face, texture(index).name());
+    glBindSampler(first_unit + face, world.kind == WorldKind::cube
+                                         ? samplers_.for_cube_face(source)
+                                         : samplers_.for_equirectangular(source));
   }
 }
 

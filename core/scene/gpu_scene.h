@@ -37,7 +37,7 @@ class GpuScene {
   void bind_object(GLuint binding, size_t object) const;
   /// Materials and lights, as the storage buffers 0 and 1.
   void bind_materials_and_lights() const;
-  /// The six textures of a material on units 0 … 5; white for none.
+  /// The textures that a material has, on their units of 0 … 5.
   void bind_material_textures(const Material& material) const;
   /// The world's textures on units `first_unit` … + 5; white for none.
   void bind_world_textures(GLuint first_unit) const;
@@ -50,8 +50,6 @@ class GpuScene {
   };
   template <typename Source, typename Item>
   using Cache = std::unordered_map<const Source*, Cached<Source, Item>>;
-
-  void bind_texture(GLuint unit, int texture, GLuint sampler) const;
 
   std::shared_ptr<const Scene> scene_;
   Cache<Mesh, GpuMesh> meshes_;

@@ -15,7 +15,7 @@ namespace kestrel {
 namespace {
 
 constexpr GLuint kFrameBlock = 0, kObjectBlock = 1;
-constexpr GLint kMaterialIndex = 0;  // uniform of shaders/raster/gbuffer.frag
+constexpr GLint kMaterialIndex = 0;  // uniform of shaders/raster/gbuffer_fragment.glsl
 constexpr GLuint kFirstWorldUnit = 7;
 
 /// Everything fixed that the passes rely on; the context is shared with other users.
@@ -52,6 +52,9 @@ class RasterPasses {
   gl::Program gbuffer_program_ = gl::build_program(
       "G-buffer",
       {{GL_VERTEX_SHADER, "raster/gbuffer.vert"}, {GL_FRAGMENT_SHADER, "raster/gbuffer.frag"}});
+  gl::Program masked_program_ =
+      gl::build_program("G-buffer, masked", {{GL_VERTEX_SHADER, "raster/gbuffer.vert"},
+                                             {GL_FRAGMENT_SHADER, "raster/gbuffer_masked.frag"}});
   gl::Program lighting_program_ = gl::build_program(
       "lighting",
       {{GL_VERTEX_SHADER, "raster/lighting.vert"}, {GL_FRAGMENT_SHADER, "raster/lighting.frag"}});
@@ -96,9 +99,12 @@ void RasterPasses::draw_with_materials(size_t index) const {
   mesh.bind();
   gpu_scene.bind_object(kObjectBlock, index);
   for (const SlotRange& range : mesh.ranges()) {
-    const int material = gpu_scene.material_of(object, range.slot);
-    gpu_scene.bind_material_textures(scene().materials[material]);
-    glProgramUniform1ui(gbuffer_program_.name(), kMaterialIndex, static_cast<GLuint>(material));
+    const int material_index = gpu_scene.material_of(object, range.slot);
+    const Material& material = scene().materials[material_index];
+    gpu_scene.bind_material_textures(material);
+    glUseProgram(material.alpha_mode == AlphaMode::mask ? masked_program_.name()
+                                                        : gbuffer_program_.name());
+    glUniform1ui(kMaterialIndex, static_cast<GLuint>(material_index));
     glDrawArrays(GL_TRIANGLES, range.first_vertex, range.vertex_count);
   }
 }
@@ -117,7 +123,6 @@ void RasterPasses::fill_gbuffer(const FrameInputs& inputs) const {
   targets_.begin_gbuffer();
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  glUseProgram(gbuffer_program_.name());
   gpu_scene.bind_materials_and_lights();
   for (const size_t object : visible_objects(inputs)) draw_with_materials(object);
 }

@@ -43,7 +43,7 @@ struct GpuMaterial {
   uint alpha_mode;  // AlphaMode
   vec2 tiling;
   vec2 offset;
-  uint has_normal_texture;
+  uint textures;  // bit i: a texture is bound to unit i (shaders/raster/material.glsl)
   uint unused_0;
   uint unused_1;
   uint unused_2;

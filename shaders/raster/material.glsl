@@ -14,7 +14,7 @@ layout(binding = 3) uniform sampler2D specular_texture;
 layout(binding = 4) uniform sampler2D normal_texture;
 layout(binding = 5) uniform sampler2D optical_texture;
 
-const uint kAlphaMask = 1u;
+const uint kNormalUnit = 4u;
 const uint kAlphaBlend = 2u;
 // What an opaque texel may come to after filtering.
 const float kOpaque = 1.0 - 1e-6;
@@ -25,18 +25,24 @@ struct MaterialSample {
   vec4 diffuse;   // A: alpha after the alpha mode
   vec4 specular;  // A: exponent, 0 ... 1 for 1 ... 255
   vec3 optical;   // R reflectivity, G index of refraction, B opacity including alpha
+  float alpha;    // before the alpha mode
 };
 
-// Ends the fragment where a mask leaves no surface.
+bool has_texture(GpuMaterial m, uint unit) { return (m.textures & (1u << unit)) != 0u; }
+
+vec4 textured(GpuMaterial m, vec4 color, uint unit, sampler2D image, vec2 uv) {
+  return has_texture(m, unit) ? color * textureLod(image, uv, 0.0) : color;
+}
+
 MaterialSample sample_material(GpuMaterial m, vec2 uv, float environment_ior) {
   MaterialSample s;
-  s.diffuse = m.diffuse * textureLod(diffuse_texture, uv, 0.0);
-  if (m.alpha_mode == kAlphaMask && s.diffuse.a < m.alpha_cutoff) discard;
+  s.emission = textured(m, vec4(m.emission, 1.0), 0u, emission_texture, uv).rgb;
+  s.ambient = textured(m, vec4(m.ambient, 1.0), 1u, ambient_texture, uv).rgb;
+  s.diffuse = textured(m, m.diffuse, 2u, diffuse_texture, uv);
+  s.specular = textured(m, m.specular, 3u, specular_texture, uv);
+  s.optical = textured(m, vec4(m.optical, 1.0), 5u, optical_texture, uv).rgb;
+  s.alpha = s.diffuse.a;
   if (m.alpha_mode != kAlphaBlend) s.diffuse.a = 1.0;
-  s.emission = m.emission * textureLod(emission_texture, uv, 0.0).rgb;
-  s.ambient = m.ambient * textureLod(ambient_texture, uv, 0.0).rgb;
-  s.specular = m.specular * textureLod(specular_texture, uv, 0.0);
-  s.optical = m.optical * textureLod(optical_texture, uv, 0.0).rgb;
   // What alpha alone leaves uncovered shines straight through.
   if (m.alpha_mode == kAlphaBlend && s.optical.b >= kOpaque) s.optical.g = environment_ior;
   s.optical.b *= s.diffuse.a;
@@ -51,8 +57,9 @@ vec3 safe_normalize(vec3 v, vec3 fallback) {
 // The normal map's normal in world space; `normal` unit, `tangent` as interpolated, w = sign of the
 // bitangent. No tangent: the normal as it is.
 vec3 mapped_normal(GpuMaterial m, vec2 uv, vec3 normal, vec4 tangent) {
+  if (!has_texture(m, kNormalUnit)) return normal;
   vec3 t = safe_normalize(tangent.xyz - normal * dot(normal, tangent.xyz), vec3(0.0));
-  if (m.has_normal_texture == 0u || t == vec3(0.0)) return normal;
+  if (t == vec3(0.0)) return normal;
   vec3 b = cross(normal, t) * (tangent.w < 0.0 ? -1.0 : 1.0);
   vec3 painted = textureLod(normal_texture, uv, 0.0).rgb * 2.0 - 1.0;
   vec3 n = mix(vec3(0.0, 0.0, 1.0), painted, m.normal_strength);
