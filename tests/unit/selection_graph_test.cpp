@@ -125,6 +125,9 @@ TEST(SelectionGraph, TiesGoToTheFirstListed) {
   EXPECT_EQ(indices(select_nodes({{10, 5}, {10, 5}, {10, 5}}, 20)), (Indices{0, 1}));
   // Equal cost: the first is the costlier, dropped or selected before the others.
   EXPECT_EQ(indices(select_nodes({{10, 1}, {10, 2}, {10, 2}}, 10)), (Indices{1}));
+  // Zeros of either sign are equal.
+  EXPECT_EQ(indices(select_nodes({{10, -0.0}, {10, 0.0}}, 10)), (Indices{0}));
+  EXPECT_EQ(indices(select_nodes({{10, 0.0}, {10, -0.0}}, 10)), (Indices{0}));
   // Equal relevance: the costlier first.
   EXPECT_EQ(indices(select_nodes({{10, 5}, {20, 5}, {15, 5}}, 30)), (Indices{0, 1}));
 }
@@ -187,6 +190,9 @@ TEST(SelectionGraph, TreatsBrokenNumbersAsDocumented) {
   EXPECT_EQ(indices(select_nodes({{-100, 9}, {10, 1}, {10, 1}}, 10)), (Indices{0, 1}));
   // No number as relevance: last.
   EXPECT_EQ(indices(select_nodes({{10, kNan}, {10, -1}}, 10)), (Indices{1}));
+  // Below zero and infinite relevances order as numbers do.
+  EXPECT_EQ(indices(select_nodes({{9, -2}, {9, -1}, {9, -3e300}}, 10)), (Indices{1}));
+  EXPECT_EQ(indices(select_nodes({{9, 1e300}, {9, kInf}, {9, -kInf}}, 10)), (Indices{1}));
   EXPECT_EQ(indices(select_nodes({{kNan, kNan}, {kInf, kInf}}, kInf)), (Indices{0, 1}));
 }
 
