@@ -14,11 +14,9 @@ _sessions = {}
 _lock = threading.Lock()
 
 
-def stable_id(text):
-    """64-bit id, never 0, the same in every run."""
-    value = int.from_bytes(hashlib.blake2b(text.encode("utf-8", "replace"),
-                                           digest_size=8).digest(), "little")
-    return value or 1
+def stable_id(key):
+    """64-bit id of some bytes, never 0, the same in every run."""
+    return int.from_bytes(hashlib.blake2b(key, digest_size=8).digest(), "little") or 1
 
 
 def digest(*arrays):
@@ -82,13 +80,14 @@ class Export:
             self.session.warned.add(text)
             self._say(text)
 
-    def new_id(self, kind, text):
-        """Id of an item that is met for the first time in this export."""
-        ident = stable_id(text)
+    def new_id(self, kind, key):
+        """Id of an item that is met for the first time in this export; `key` is text or bytes."""
+        key = key.encode("utf-8", "replace") if isinstance(key, str) else key
+        ident = stable_id(key)
         count = 0
         while (kind, ident) in self._met:
             count += 1
-            ident = stable_id(f"{text}#{count}")
+            ident = stable_id(key + b"#%d" % count)
         self._met.add((kind, ident))
         return ident
 

@@ -13,9 +13,11 @@ TEXT_WIDTH = 60  # characters of a wrapped message
 # Panels for every engine without one of its own that show what Kestrel has not.
 NOT_FOR_KESTREL = {
     "DATA_PT_area", "DATA_PT_falloff_curve", "DATA_PT_light", "DATA_PT_preview", "DATA_PT_spot",
-    "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "RENDER_PT_freestyle",
-    "RENDER_PT_stereoscopy", "VIEWLAYER_PT_freestyle", "WORLD_PT_context_world",
+    "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "RENDER_PT_stereoscopy",
+    "WORLD_PT_context_world",
 }
+NOT_FOR_KESTREL_PREFIXES = ("MATERIAL_PT_freestyle", "RENDER_PT_freestyle", "RENDER_PT_gpencil",
+                            "RENDER_PT_grease_pencil", "VIEWLAYER_PT_freestyle")
 
 
 def draw_library_error(layout):
@@ -286,8 +288,8 @@ def shared_panels():
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
         name = panel.__name__
-        if "BLENDER_RENDER" in engines and name not in NOT_FOR_KESTREL and not name.startswith(
-                ("VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle")):
+        if ("BLENDER_RENDER" in engines and name not in NOT_FOR_KESTREL
+                and not name.startswith(NOT_FOR_KESTREL_PREFIXES)):
             yield panel
 
 

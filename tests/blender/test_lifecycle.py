@@ -30,6 +30,7 @@ def state():
 
 class EnableTest(unittest.TestCase):
     def test_five_times(self):
+        session.drop_all()
         enabled = state()
         self.assertEqual(len(enabled["properties"]), 4)
         self.assertIn("RENDER_PT_format", enabled["shared"])

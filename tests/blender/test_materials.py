@@ -192,17 +192,14 @@ class GraphTest(SceneTest):
         self.assertEqual(surface.diffuse.texture.image, node.image)
         np.testing.assert_allclose(surface.diffuse.color, (1, 1, 1))
 
-    def test_alpha_of_another_image_is_reported(self):
+    def test_alpha_that_no_image_gives_is_reported(self):
         material = principled("P")
         tree = material.node_tree
-        node = next(n for n in tree.nodes if n.type == "BSDF_PRINCIPLED")
-        for name, output, socket in (("A", "Color", "Base Color"), ("B", "Alpha", "Alpha")):
-            texture = tree.nodes.new("ShaderNodeTexImage")
-            texture.image = checker(name, alpha=True)
-            tree.links.new(texture.outputs[output], node.inputs[socket])
+        noise = tree.nodes.new("ShaderNodeTexNoise")
+        tree.links.new(noise.outputs[0], tree.nodes["Principled BSDF"].inputs["Alpha"])
         warnings = []
         self.assertFalse(read(material, warnings).masked)
-        self.assertRegex(warnings[0], "Material 'P': .*'B'")
+        self.assertRegex(warnings[0], "Material 'P': .*Noise.*the surface is opaque")
 
     def test_groups_reroutes_and_muted_nodes_are_seen_through(self):
         inner = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
@@ -345,6 +342,41 @@ class PictureTest(SceneTest):
         self.assert_color(picture[24, 8], (1, 0, 0), 1e-2)
         self.assert_color(picture[24, 24], (0, 1, 0), 1e-2)
         self.assert_color(picture[8, 8], (0, 0, 1))
+
+    def test_mask_by_other_images(self):
+        """Holes from an image of another size, by its alpha or brightness, either way round."""
+        pixels = np.ones((8, 8, 4), np.float32)
+        pixels[4:, :, :] = 0.0
+        mask = image("Mask", pixels, non_color=True)
+        self.plane("Behind", 8, emission("Blue", (0, 0, 1)), Matrix.Translation((0, 0, -1)))
+        for output in ("Alpha", "Color"):
+            for inverted in (False, True):
+                for colored in (False, True):
+                    with self.subTest(output=output, inverted=inverted, colored=colored):
+                        plane = self.plane("Leaf", 4, self.leaf(mask, output, inverted, colored))
+                        picture = self.render()
+                        bpy.data.objects.remove(plane)
+                        solid, hole = (8, 24) if inverted else (24, 8)
+                        left = (1, 0, 0) if colored else (1, 1, 0)
+                        self.assert_color(picture[solid, 8], left)
+                        self.assert_color(picture[hole, 8], (0, 0, 1))
+
+    def leaf(self, mask, output_name, inverted, colored):
+        material, tree, output = new_material("Leaf")
+        clear, shader, mix, holes = (tree.nodes.new(f"ShaderNode{kind}") for kind in (
+            "BsdfTransparent", "Emission", "MixShader", "TexImage"))
+        shader.inputs["Color"].default_value = (1, 1, 0, 1)
+        holes.image, holes.interpolation = mask, "Closest"
+        if colored:
+            texture = tree.nodes.new("ShaderNodeTexImage")
+            texture.image, texture.interpolation = checker(), "Closest"
+            tree.links.new(texture.outputs["Color"], shader.inputs["Color"])
+        tree.links.new(holes.outputs[output_name], mix.inputs[0])
+        first, second = (shader, clear) if inverted else (clear, shader)
+        tree.links.new(first.outputs[0], mix.inputs[1])
+        tree.links.new(second.outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        return material
 
     def test_mirror_shows_what_is_opposite(self):
         self.plane("Mirror", 4, shader_material("M", GLOSSY, Color=(1, 1, 1), Roughness=0.0))

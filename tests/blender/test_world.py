@@ -13,6 +13,8 @@ class WorldTest(SceneTest):
     def environment(self, pixels, rotation_z=None, vector_type="POINT"):
         """World of an equirectangular image, height x width x 4, first row at the bottom."""
         world, background = self.world((0, 0, 0))
+        if hasattr(world, "cycles"):
+            world.cycles.sampling_method = "NONE"  # takes seconds, and nothing is lit
         nodes, links = world.node_tree.nodes, world.node_tree.links
         texture = nodes.new("ShaderNodeTexEnvironment")
         texture.image = image("Environment", pixels, non_color=True, is_float=True)

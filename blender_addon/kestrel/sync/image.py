@@ -87,20 +87,65 @@ def _as_pixels(export, image, ident, options, extra):
                lambda: export.scene.set_texture_pixels(ident, values, options))
 
 
+def original(image):
+    """The image in the file; pixels and packed data are there and not in evaluated copies."""
+    return image.original if image is not None and image.is_evaluated else image
+
+
+def _resized(values, height, width):
+    """Nearest texels at another size."""
+    rows = np.arange(height) * values.shape[0] // height
+    columns = np.arange(width) * values.shape[1] // width
+    return values[rows[:, None], columns]
+
+
+def masked_pixels(image, mask):
+    """Pixels of `image` (white for None) with the alpha of a nodes.Mask; uint8 or float32."""
+    source = pixels(original(mask.image))
+    if source is None:
+        return None
+    alpha = source[..., 3] if mask.from_alpha else source[..., :3].mean(axis=-1)
+    if source.dtype == np.uint8:
+        alpha = alpha / np.float32(255.0)
+    alpha = 1.0 - alpha if mask.inverted else alpha
+    base = np.full((*alpha.shape, 4), 255, np.uint8) if image is None else pixels(image)
+    if base is None:
+        return None
+    if base.dtype == np.uint8:
+        alpha = np.rint(alpha * 255.0)
+    size = np.maximum(base.shape[:2], alpha.shape[:2])
+    result = np.ascontiguousarray(_resized(base, *size))
+    result[..., 3] = _resized(alpha, *size)
+    return result
+
+
+def _as_masked(export, image, mask, ident, options, extra):
+    values = masked_pixels(image, mask)
+    if values is None:
+        export.warn(f"Image '{mask.image.name}': it could not be read, so it cuts no holes.")
+        return False
+    export.put(capi.KIND_TEXTURE, ident, ("pixels", digest(values), extra),
+               lambda: export.scene.set_texture_pixels(ident, values, options))
+    return True
+
+
 def sync_texture(export, texture):
     """Id of an image, sampled this way, in the core."""
-    image = texture.image.original if texture.image.is_evaluated else texture.image
-    srgb = is_srgb(image, export.warn)
+    image, mask = original(texture.image), texture.mask
+    shown = image or original(mask.image)
+    srgb = image is not None and is_srgb(image, export.warn)
     extra = (srgb, texture.nearest, texture.extension)
-    key = f"{compat.datablock_key(image)}/{extra}"
+    by = (compat.datablock_key(original(mask.image)), mask.from_alpha, mask.inverted) if mask else ()
+    key = f"{image and compat.datablock_key(image)}/{extra}/{by}"
     if key not in export.textures:
-        if image.source in {"SEQUENCE", "MOVIE", "TILED"}:
-            export.warn(f"Image '{image.name}': {image.source.lower()} images are not supported; "
+        if shown.source in {"SEQUENCE", "MOVIE", "TILED"}:
+            export.warn(f"Image '{shown.name}': {shown.source.lower()} images are not supported; "
                         "only its first picture is used.")
-        options = capi.TextureOptions(capi.encode(image.name), *extra)
+        options = capi.TextureOptions(capi.encode(shown.name), *extra)
         ident = export.new_id(capi.KIND_TEXTURE, key)
-        if not _as_file(export, image, ident, options, extra):
-            _as_pixels(export, image, ident, options, extra)
+        if not (mask and _as_masked(export, image, mask, ident, options, extra)):
+            if not _as_file(export, shown, ident, options, extra):
+                _as_pixels(export, shown, ident, options, extra)
         export.textures[key] = ident
     return export.textures[key]
 

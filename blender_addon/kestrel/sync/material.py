@@ -246,33 +246,42 @@ class Shaders:
 
     def _principled_alpha(self, surface, node, stack):
         socket = node.inputs["Alpha"]
-        above, _, above_stack = self.reader.source(socket, stack)
+        above, origin, above_stack = self.reader.source(socket, stack)
         if above is None or above.type == "VALUE":
             alpha = self.reader.number(socket, stack)
             return replace(surface, alpha=min(max(alpha, 0.0), 1.0))
-        return self._masked(surface, above, above_stack, opaque_where_one=True)
+        return self._masked(surface, above, origin, above_stack, inverted=False)
 
-    def _masked(self, surface, node, stack, opaque_where_one):
-        """The surface with holes where the image that `node` brings says so."""
-        texture = self.reader.first_image(node, stack)
+    def _masked(self, surface, node, output, stack, inverted):
+        """The surface with holes where the image that this output brings is 0 (inverted: 1)."""
+        found = self.reader.first_image(node, stack)
+        if found is None:
+            self.reader.unsupported(node, "the surface is opaque")
+            return surface
+        direct = node.type == "TEX_IMAGE"
+        from_alpha = output.name == "Alpha" if direct else True
+        if not direct:
+            self.reader.unsupported(node, f"the alpha of '{found.image.name}' cuts the holes")
         mine = surface.diffuse.texture
-        if texture and mine and texture.image == mine.image and opaque_where_one:
+        if mine and mine.image == found.image and from_alpha and not inverted:
             return replace(surface, masked=True)
-        name = texture.image.name if texture else node.name
-        self.reader.unsupported(
-            node, f"alpha from '{name}' is left out, as it must be the alpha of the image that "
-            "gives the colour")
-        return surface
+        texture = replace(mine or replace(found, image=None),
+                          mask=nodes.Mask(found.image, from_alpha, inverted))
+
+        def with_mask(value):
+            return replace(value, texture=texture) if value.texture == mine else value
+        return replace(surface, masked=True, diffuse=replace(surface.diffuse, texture=texture),
+                       ambient=with_mask(surface.ambient) if mine else surface.ambient)
 
     def _mix(self, node, stack, depth):
         first = self.surface(node.inputs[1], stack, depth + 1)
         second = self.surface(node.inputs[2], stack, depth + 1)
-        above, _, above_stack = self.reader.source(node.inputs[0], stack)
+        above, output, above_stack = self.reader.source(node.inputs[0], stack)
         if above is None or above.type == "VALUE":
             return mix(first, second, self.reader.number(node.inputs[0], stack))
-        if first.transparent or second.transparent:
+        if first.transparent != second.transparent:
             solid = second if first.transparent else first
-            return self._masked(solid, above, above_stack, opaque_where_one=first.transparent)
+            return self._masked(solid, above, output, above_stack, second.transparent)
         factor = self._mix_factor(above, above_stack)
         self.reader.unsupported(above, f"the shaders are mixed by {factor:.3g} everywhere")
         return mix(first, second, factor)
@@ -326,7 +335,7 @@ def _one_mapping(surface, material, warn):
     mappings = {(texture.tiling, texture.offset) for texture in textures}
     if len(mappings) > 1:
         warn(f"Material '{material.name}': its images are mapped in different ways; all follow "
-             f"'{textures[0].image.name}'.")
+             "the first one.")
     return (textures[0].tiling, textures[0].offset) if textures else ((1.0, 1.0), (0.0, 0.0))
 
 

@@ -18,13 +18,22 @@ EXTENSIONS = {"REPEAT": capi.EXTENSION_REPEAT, "EXTEND": capi.EXTENSION_CLAMP,
 
 
 @dataclass(frozen=True)
+class Mask:
+    """What gives a texture its alpha in place of its own image's."""
+    image: object
+    from_alpha: bool  # the image's alpha, else its brightness
+    inverted: bool    # opaque where it is 0
+
+
+@dataclass(frozen=True)
 class Texture:
     """An image as one node samples it; uv' = offset + uv * tiling."""
-    image: object
+    image: object  # None: white, with a mask
     nearest: bool = False
     extension: int = capi.EXTENSION_REPEAT
     tiling: tuple = (1.0, 1.0)
     offset: tuple = (0.0, 0.0)
+    mask: Mask = None
 
 
 @dataclass(frozen=True)

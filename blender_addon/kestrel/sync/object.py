@@ -5,6 +5,8 @@ Instances share their mesh. What one instancer places is one unit of the heurist
 instancer's name and settings.
 """
 
+import struct
+
 from .. import compat
 from ..native import capi
 from .light import sync_light
@@ -31,65 +33,71 @@ class Objects:
         self.export = export
         self.override = override
         self.settings = rows("object")
-        self.units = set()   # whose settings are set
-        self.materials = {}  # object: ids by slot
+        self.units = set()  # whose settings are set
+        self.keys = {}      # original object: its key
+        self.shapes = {}    # (object key, address of its data): name, mesh, materials by slot
 
-    def instance_key(self, instance):
-        if not instance.is_instance:
-            return compat.datablock_key(instance.object.original)
-        path = ".".join(map(str, instance.persistent_id))
-        return (f"{compat.datablock_key(instance.parent.original)}/"
-                f"{compat.datablock_key(instance.object.original)}/{path}")
-
-    def slots(self, obj):
-        """Material ids by slot."""
-        key = (obj.original, obj.data.name_full)
-        if key not in self.materials:
-            used = [self.override or slot.material for slot in obj.material_slots]
-            if not used and self.override:
-                used = [self.override]
-            self.materials[key] = tuple(sync_material(self.export, item) for item in used)
-        return self.materials[key]
-
-    def unit_settings(self, ident, unit, owner):
-        """The owner's settings, once for each unit. Units that always had the defaults need no
-        calls."""
-        if unit in self.units:
-            return
-        self.units.add(unit)
-        group = getattr(owner, "kestrel", None)
-        sent = self.export.session.sent_settings
-        values = {row["name"]: as_text(row, getattr(group, row["name"]))
-                  for row in self.settings} if group else {}
-        changed = {row["name"] for row in self.settings if group and
-                   getattr(group, row["name"]) != default_value(row)}
-        if changed or unit in sent:
-            for name, value in values.items():
-                self.export.scene.set_object_setting(ident, name, value)
-            sent.add(unit)
+    def key_of(self, original):
+        key = self.keys.get(original)
+        if key is None:
+            key = self.keys[original] = compat.datablock_key(original).encode("utf-8", "replace")
+        return key
 
     def add(self, instance):
         obj = instance.object
         if not instance.show_self:
             return
+        original = obj.original
+        key, owner = self.key_of(original), obj
+        if instance.is_instance:
+            owner = instance.parent
+            key = b"%b/%b/%b" % (self.key_of(owner.original), key,
+                                 struct.pack("8i", *instance.persistent_id))
         if obj.type == "LIGHT":
-            sync_light(self.export, self.instance_key(instance), obj.data, instance.matrix_world)
+            sync_light(self.export, key, obj.data, instance.matrix_world)
         elif obj.type in GEOMETRY:
-            self.add_geometry(instance, obj)
+            self.add_geometry(obj, original, owner, key, instance.matrix_world)
         elif obj.type in UNSUPPORTED:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
 
-    def add_geometry(self, instance, obj):
-        mesh = sync_mesh(self.export, obj)
+    def add_geometry(self, obj, original, owner, key, matrix):
+        name, mesh, materials = self.shape(obj, original)
         if not mesh:
             return
-        owner = instance.parent if instance.is_instance else obj
         unit = owner.name_full
-        ident = self.export.new_id(capi.KIND_OBJECT, self.instance_key(instance))
-        description = (obj.name_full, unit, mesh, self.slots(obj))
-        self.export.put_object(ident, description, columns(instance.matrix_world))
-        self.unit_settings(ident, unit, owner)
+        ident = self.export.new_id(capi.KIND_OBJECT, key)
+        self.export.put_object(ident, (name, unit, mesh, materials), columns(matrix))
+        if unit not in self.units:
+            self.units.add(unit)
+            self.unit_settings(ident, unit, owner)
+
+    def shape(self, obj, original):
+        """(name, mesh id, material ids by slot) of an evaluated object."""
+        key = (self.key_of(original), obj.data.as_pointer())
+        found = self.shapes.get(key)
+        if found is None:
+            found = (obj.name_full, sync_mesh(self.export, obj), self.slots(obj))
+            self.shapes[key] = found
+        return found
+
+    def slots(self, obj):
+        used = [self.override or slot.material for slot in obj.material_slots]
+        if not used and self.override:
+            used = [self.override]
+        return tuple(sync_material(self.export, item) for item in used)
+
+    def unit_settings(self, ident, unit, owner):
+        """The owner's settings. Units that always had the defaults need no calls."""
+        sent = self.export.session.sent_settings
+        values = {row["name"]: getattr(owner.kestrel, row["name"]) for row in self.settings}
+        if unit not in sent and all(values[row["name"]] == default_value(row)
+                                    for row in self.settings):
+            return
+        sent.add(unit)
+        for row in self.settings:
+            self.export.scene.set_object_setting(ident, row["name"],
+                                                 as_text(row, values[row["name"]]))
 
 
 def default_value(row):
