@@ -9,7 +9,7 @@
 #include "base/log.h"
 #include "images/images.h"
 #include "renderer.h"
-#include "scene/rt_scene.h"
+#include "tracers/embree/embree_handles.h"
 
 namespace kestrel {
 

@@ -3,162 +3,152 @@
 
 #include <tbb/parallel_for.h>
 
-#include <cmath>
-
-#include "base/error.h"
-#include "base/log.h"
-#include "shading/surface.h"
-
 namespace kestrel {
 namespace {
 
-/// What a filter function sees: the scene, through the geometry's user pointer.
-const RtScene& rt_scene_of(const RTCFilterFunctionNArguments* args) {
-  return *static_cast<const RtScene*>(args->geometryUserPtr);
+embree::SceneHandle new_scene(RTCDevice device) {
+  embree::SceneHandle scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  return scene;
 }
 
-SurfaceHit hit_of(const RTCFilterFunctionNArguments* args, unsigned i) {
-  const unsigned object = args->context->instID[0];
-  return {static_cast<int>(object), RTCHitN_primID(args->hit, args->N, i),
-          vec2(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i))};
-}
-
-/// Primary, reflection and refraction rays go through where a mask says there is no surface.
-void skip_masked(const RTCFilterFunctionNArguments* args) {
-  const Scene& scene = rt_scene_of(args).scene();
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    const SurfaceHit hit = hit_of(args, i);
-    const Object& object = scene.objects[hit.object];
-    const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
-    if (material.alpha_mode == AlphaMode::mask &&
-        evaluate_alpha(scene, object, hit) < material.alpha_cutoff) {
-      args->valid[i] = 0;
-    }
-  }
-}
-
-/// Listing 8b: a shadow ray loses light at every surface and ends when none is left.
-void attenuate_shadow(const RTCFilterFunctionNArguments* args) {
-  const Scene& scene = rt_scene_of(args).scene();
-  embree::ShadowState* states = reinterpret_cast<embree::ShadowQuery*>(args->context)->states;
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] == 0) continue;
-    embree::ShadowState& state = states[RTCRayN_id(args->ray, args->N, i)];
-    const SurfaceHit hit = hit_of(args, i);
-    if (state.enter(static_cast<uint32_t>(hit.object), RTCRayN_tfar(args->ray, args->N, i))) {
-      state.transmitted *= shadow_transmission(scene, hit);
-    }
-    if (max_component(state.transmitted) > 0.0f) args->valid[i] = 0;
-  }
-}
-
-bool object_needs_filter(const Scene& scene, const Object& object) {
-  for (const int material : object.materials) {
-    if (scene.materials[material].needs_any_hit()) return true;
-  }
-  return false;
-}
-
-void report_error(void*, RTCError code, const char* text) {
-  log::warning("Embree error {}: {}", static_cast<int>(code), text ? text : "");
+void attach_instance(RTCDevice device, RTCScene top, RTCScene mesh, const mat4x3& transform,
+                     unsigned id) {
+  RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(instance, mesh);
+  rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &transform);
+  rtcCommitGeometry(instance);
+  rtcAttachGeometryByID(top, instance, id);
+  rtcReleaseGeometry(instance);
 }
 
 }  // namespace
 
-bool embree::ShadowState::enter(uint32_t object, float distance) {
-  constexpr float kSame = 2e-6f;  // relative; a few roundings of the intersection
-  const uint32_t known = std::min<uint32_t>(crossings, kRemembered);
-  for (uint32_t i = 0; i < known; ++i) {
-    if (objects[i] == object && std::abs(distances[i] - distance) <= kSame * distance) return false;
-  }
-  distances[crossings % kRemembered] = distance;
-  objects[crossings % kRemembered] = object;
-  ++crossings;
-  return true;
-}
-
-embree::DeviceHandle embree::new_device() {
-  RTCDevice device = rtcNewDevice(nullptr);
-  if (!device) {
-    fail(ErrorCode::unknown, "Embree could not start (error {}). It needs a processor with SSE2.",
-         static_cast<int>(rtcGetDeviceError(nullptr)));
-  }
-  rtcSetDeviceErrorFunction(device, report_error, nullptr);
-  return DeviceHandle(device);
-}
-
 void RtScene::update(const std::shared_ptr<const Scene>& scene) {
   if (scene == scene_) return;
   scene_ = scene;
-  build_meshes();
-  build_top();
+  normal_from_object_.clear();
+  for (const Object& object : scene_->objects) {
+    normal_from_object_.push_back(glm::transpose(glm::inverse(mat3(object.world_from_object))));
+  }
+  inspect_meshes();
+  const std::vector<int> static_objects = choose_static_objects();
+  build_static(static_objects);
+  build_instanced_meshes(static_objects);
+  build_top(static_objects);
+  embree::check_device(device_);
 }
 
-void RtScene::build_meshes() {
-  std::unordered_map<const Mesh*, bool> wanted;  // mesh, whether it needs filter functions
-  for (const Object& object : scene_->objects) {
-    const Mesh* mesh = scene_->meshes[object.mesh].get();
-    wanted[mesh] = wanted[mesh] || object_needs_filter(*scene_, object);
+SurfaceHit RtScene::resolve(unsigned instance, unsigned geometry, unsigned primitive,
+                            const vec2& barycentric) const {
+  const bool filtered = geometry & 1u;
+  if (instance == RTC_INVALID_GEOMETRY_ID || instance == 0) {
+    const unsigned slot = geometry / 2;
+    return {static_objects_[slot], static_geometry_[slot].triangle(filtered, primitive),
+            barycentric};
   }
-  std::erase_if(meshes_, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  const int object = instances_[instance];
+  const Instanced& mesh = instanced_.at(scene_->meshes[scene_->objects[object].mesh].get());
+  return {object, mesh.geometry.triangle(filtered, primitive), barycentric};
+}
 
-  std::vector<MeshEntry*> dirty;
-  for (const auto& mesh : scene_->meshes) {
-    const auto found = wanted.find(mesh.get());
-    if (found == wanted.end()) continue;
-    MeshEntry& entry = meshes_[mesh.get()];
-    if (entry.scene && entry.filtered == found->second) continue;
-    entry.mesh = mesh;
-    entry.filtered = found->second;
-    dirty.push_back(&entry);
-  }
-  tbb::parallel_for(size_t{0}, dirty.size(), [&](size_t i) {
-    MeshEntry& entry = *dirty[i];
-    const Mesh& mesh = *entry.mesh;
-    if (!entry.scene) {
-      RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                 mesh.positions.data(), 0, sizeof(vec3), mesh.positions.size());
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                 mesh.triangles.data(), 0, sizeof(uvec3), mesh.triangles.size());
-      rtcSetGeometryUserData(geometry, this);
-      entry.scene.reset(rtcNewScene(device_));
-      rtcSetSceneFlags(entry.scene.get(), RTC_SCENE_FLAG_ROBUST);
-      rtcAttachGeometryByID(entry.scene.get(), geometry, 0);
-      rtcReleaseGeometry(geometry);
-      entry.geometry = geometry;
+/// Counts who uses each mesh, and finds the slots whose material, in any of them, needs a filter
+/// function.
+void RtScene::inspect_meshes() {
+  users_.assign(scene_->meshes.size(), 0);
+  filtered_slots_.assign(scene_->meshes.size(), std::vector<bool>(1, false));
+  for (const Object& object : scene_->objects) {
+    ++users_[object.mesh];
+    std::vector<bool>& slots = filtered_slots_[object.mesh];
+    if (slots.size() < object.materials.size()) slots.resize(object.materials.size(), false);
+    for (size_t s = 0; s < slots.size(); ++s) {
+      const int material = object.materials[std::min(s, object.materials.size() - 1)];
+      if (scene_->materials[material].needs_any_hit()) slots[s] = true;
     }
-    rtcSetGeometryIntersectFilterFunction(entry.geometry, entry.filtered ? skip_masked : nullptr);
-    rtcSetGeometryOccludedFilterFunction(entry.geometry,
-                                         entry.filtered ? attenuate_shadow : nullptr);
-    rtcCommitGeometry(entry.geometry);
-    rtcCommitScene(entry.scene.get());
+  }
+}
+
+std::vector<int> RtScene::choose_static_objects() {
+  std::vector<int> chosen;
+  std::unordered_map<std::string, mat4x3> transforms;
+  for (size_t i = 0; i < scene_->objects.size(); ++i) {
+    const Object& object = scene_->objects[i];
+    if (users_[object.mesh] != 1) continue;
+    const auto last = last_transforms_.find(object.name);
+    if (last != last_transforms_.end() && last->second != object.world_from_object) {
+      moving_.insert(object.name);
+    }
+    transforms.emplace(object.name, object.world_from_object);
+    if (!moving_.contains(object.name)) chosen.push_back(static_cast<int>(i));
+  }
+  last_transforms_ = std::move(transforms);
+  return chosen;
+}
+
+void RtScene::build_static(const std::vector<int>& objects) {
+  static_objects_ = objects;
+  std::vector<StaticObject> wanted;
+  for (const int i : objects) {
+    const Object& object = scene_->objects[i];
+    wanted.push_back(
+        {scene_->meshes[object.mesh], object.world_from_object, filtered_slots_[object.mesh]});
+  }
+  if (static_ && wanted == static_built_) return;
+  static_built_ = std::move(wanted);
+  static_ = new_scene(device_);
+  static_geometry_.clear();
+  for (const StaticObject& o : static_built_) {
+    static_geometry_.emplace_back(o.mesh, o.filtered_slots, &o.world_from_object);
+  }
+  for (size_t i = 0; i < static_geometry_.size(); ++i) {
+    static_geometry_[i].attach(device_, static_.get(), static_cast<unsigned>(i), this);
+  }
+  rtcCommitScene(static_.get());
+}
+
+void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
+  std::unordered_set<int> wanted;
+  for (const Object& object : scene_->objects) wanted.insert(object.mesh);
+  for (const int i : static_objects) wanted.erase(scene_->objects[i].mesh);
+
+  std::unordered_map<const Mesh*, Instanced> kept;
+  std::vector<Instanced*> dirty;
+  for (const int index : wanted) {
+    const std::shared_ptr<const Mesh>& mesh = scene_->meshes[index];
+    const std::vector<bool>& slots = filtered_slots_[index];
+    const auto known = instanced_.find(mesh.get());
+    if (known != instanced_.end() && known->second.filtered_slots == slots) {
+      kept.insert(instanced_.extract(known));
+    } else {
+      const auto [entry, is_new] =
+          kept.try_emplace(mesh.get(), Instanced{mesh, slots, RtMesh(mesh, slots, nullptr), {}});
+      if (is_new) dirty.push_back(&entry->second);
+    }
+  }
+  instanced_ = std::move(kept);
+  tbb::parallel_for(size_t{0}, dirty.size(), [&](size_t i) {
+    dirty[i]->scene = new_scene(device_);
+    dirty[i]->geometry.attach(device_, dirty[i]->scene.get(), 0, this);
+    rtcCommitScene(dirty[i]->scene.get());
   });
 }
 
-void RtScene::build_top() {
-  top_.reset(rtcNewScene(device_));
-  rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_ROBUST);
-  normal_from_object_.clear();
+void RtScene::build_top(const std::vector<int>& static_objects) {
+  top_.reset();
+  instances_.assign(1, kNone);
+  if (static_objects.size() == scene_->objects.size()) return;
+  top_ = new_scene(device_);
+  attach_instance(device_, top_.get(), static_.get(), mat4x3(1.0f), 0);
+  const std::unordered_set<int> in_static(static_objects.begin(), static_objects.end());
   for (size_t i = 0; i < scene_->objects.size(); ++i) {
+    if (in_static.contains(static_cast<int>(i))) continue;
     const Object& object = scene_->objects[i];
-    normal_from_object_.push_back(glm::transpose(glm::inverse(mat3(object.world_from_object))));
-    const MeshEntry& entry = meshes_.at(scene_->meshes[object.mesh].get());
-    RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, entry.scene.get());
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
-                            &object.world_from_object);
-    rtcCommitGeometry(instance);
-    rtcAttachGeometryByID(top_.get(), instance, static_cast<unsigned>(i));
-    rtcReleaseGeometry(instance);
+    attach_instance(device_, top_.get(),
+                    instanced_.at(scene_->meshes[object.mesh].get()).scene.get(),
+                    object.world_from_object, static_cast<unsigned>(instances_.size()));
+    instances_.push_back(static_cast<int>(i));
   }
   rtcCommitScene(top_.get());
-  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
-    fail(error == RTC_ERROR_OUT_OF_MEMORY ? ErrorCode::out_of_memory : ErrorCode::unknown,
-         "Embree could not build the scene (error {}). Try a scene with fewer triangles.",
-         static_cast<int>(error));
-  }
 }
 
 }  // namespace kestrel

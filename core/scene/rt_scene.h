@@ -1,52 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scene in Embree: one bottom-level scene per mesh, one instance per object.
+// The scene in Embree. Objects that share a mesh instance it; all others lie, in world space, in
+// one static part, which is faster to trace. An object that moves becomes an instance, so that
+// moving it again does not rebuild the static part.
 #pragma once
 
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
+#include "scene/rt_mesh.h"
 #include "scene/scene.h"
-#include "tracers/embree/embree_api.h"
+#include "shading/surface.h"
+#include "tracers/embree/embree_handles.h"
 
 namespace kestrel {
-
-namespace embree {
-
-struct ReleaseDevice {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using DeviceHandle = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
-using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
-
-/// A device whose errors go to the log. Throws Error(unknown) where Embree cannot start.
-DeviceHandle new_device();
-
-/// What a shadow ray has met so far.
-struct ShadowState {
-  /// A ray through an edge meets both triangles; the light is to be taken off once. Crossings of
-  /// one object at practically the same distance count as one.
-  static constexpr int kRemembered = 8;
-
-  vec3 transmitted{1.0f};
-  uint32_t crossings = 0;
-  float distances[kRemembered];
-  uint32_t objects[kRemembered];
-
-  /// Whether this crossing is new; remembers it.
-  bool enter(uint32_t object, float distance);
-};
-
-/// Query with what shadow rays need: their states, by RTCRay::id.
-struct ShadowQuery : Query {
-  ShadowState* states;
-  ShadowQuery(bool coherent, ShadowState* states_by_id) : Query(coherent), states(states_by_id) {}
-};
-
-}  // namespace embree
 
 class RtScene {
  public:
@@ -56,27 +24,53 @@ class RtScene {
   /// Builds what differs from the last scene; meshes are compared by identity.
   void update(const std::shared_ptr<const Scene>& scene);
 
-  RTCScene handle() const { return top_.get(); }
+  RTCScene handle() const { return top_ ? top_.get() : static_.get(); }
   const Scene& scene() const { return *scene_; }
+
+  /// Which surface Embree's ids mean.
+  SurfaceHit resolve(unsigned instance, unsigned geometry, unsigned primitive,
+                     const vec2& barycentric) const;
 
   /// Inverse transpose of an object's matrix.
   const mat3& normal_from_object(int object) const { return normal_from_object_[object]; }
 
  private:
-  struct MeshEntry {
-    embree::SceneHandle scene;
-    RTCGeometry geometry = nullptr;  // owned by `scene`
-    bool filtered = false;           // shadow or primary rays must look at its materials
+  /// An object of the static part as it was built.
+  struct StaticObject {
     std::shared_ptr<const Mesh> mesh;
+    mat4x3 world_from_object;
+    std::vector<bool> filtered_slots;
+    bool operator==(const StaticObject&) const = default;
   };
-  void build_meshes();
-  void build_top();
+  struct Instanced {
+    std::shared_ptr<const Mesh> mesh;
+    std::vector<bool> filtered_slots;
+    RtMesh geometry;
+    embree::SceneHandle scene;
+  };
+
+  void inspect_meshes();
+  std::vector<int> choose_static_objects();
+  void build_static(const std::vector<int>& objects);
+  void build_instanced_meshes(const std::vector<int>& static_objects);
+  void build_top(const std::vector<int>& static_objects);
 
   RTCDevice device_;
   std::shared_ptr<const Scene> scene_;
-  std::unordered_map<const Mesh*, MeshEntry> meshes_;
-  embree::SceneHandle top_;
   std::vector<mat3> normal_from_object_;
+  std::vector<int> users_;                         // objects by mesh
+  std::vector<std::vector<bool>> filtered_slots_;  // by mesh and material slot
+
+  embree::SceneHandle static_;
+  std::vector<StaticObject> static_built_;
+  std::vector<RtMesh> static_geometry_;  // parallel to static_built_
+  std::vector<int> static_objects_;      // the same, as indices in Scene::objects
+  std::unordered_map<std::string, mat4x3> last_transforms_;
+  std::unordered_set<std::string> moving_;  // names of objects that moved once
+
+  std::unordered_map<const Mesh*, Instanced> instanced_;
+  embree::SceneHandle top_;     // null where everything is static
+  std::vector<int> instances_;  // object by instance id; [0] is the static part
 };
 
 }  // namespace kestrel

@@ -92,6 +92,52 @@ TEST(Render, OpaqueBlockerShadowsItsSideOnly) {
   expect_near(p.at(3, 8, "Lighting"), vec3(1.5f), 1e-6f);
 }
 
+TEST(Render, InstancesAndMovedObjectsAreWhereTheyAre) {
+  // Two objects share a mesh, a third has its own and moves; emission tells them apart.
+  SceneMaker s;
+  const auto glowing = [&](const vec3& color) {
+    Material m = matte(vec3(0.0f));
+    m.emission = color;
+    return s.material(m);
+  };
+  const auto tile = quad_mesh({-0.4f, -0.4f, 0}, {0.8f, 0, 0}, {0, 0.8f, 0});
+  const vec3 red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
+  s.object("red", tile, glowing(red), placed({-0.5f, -0.5f, 0}));
+  s.object("green", tile, glowing(green), placed({0.5f, -0.5f, 0}));
+  s.scene->objects[1].mesh = s.scene->objects[0].mesh;
+  s.object("blue", quad_mesh({-0.4f, -0.4f, 0}, {0.8f, 0, 0}, {0, 0.8f, 0}), glowing(blue),
+           placed({-0.5f, 0.5f, 0}));
+  Picture p(s);
+  expect_near(p.at(4, 4), red, 0.0f);
+  expect_near(p.at(12, 4), green, 0.0f);
+  expect_near(p.at(4, 12), blue, 0.0f);
+  for (const float x : {0.5f, -0.5f, 0.5f}) {
+    s.scene = std::make_shared<Scene>(*s.scene);
+    s.scene->objects[2].world_from_object = placed({x, 0.5f, 0});
+    p.renderer->render_frame(s.scene, kSize, kSize, {});
+    expect_near(p.at(x > 0 ? 12 : 4, 12), blue, 0.0f);
+    expect_near(p.at(x > 0 ? 4 : 12, 12), vec3(0.0f), 0.0f);
+    expect_near(p.at(4, 4), red, 0.0f);
+    expect_near(p.at(12, 4), green, 0.0f);
+  }
+}
+
+TEST(Render, OneMeshMayBeGlassInPart) {
+  // Slot 0 blocks the light, slot 1 lets half of it through: each triangle keeps its own.
+  SceneMaker s;
+  s.object("floor", kFloor(), s.material(matte(vec3(1.0f))));
+  Material pane = matte(vec3(0.0f));
+  pane.optical = {0.0f, 1.0f, 0.5f};
+  const auto roof = quad_mesh({-4, -4, 20}, {8, 0, 0}, {0, 8, 0});  // diagonal: x = y
+  roof->triangle_materials = {0, 1};
+  s.object("roof", roof, s.material(matte(vec3(0.0f))));
+  s.scene->objects[1].materials.push_back(s.material(pane));
+  s.light(LightType::directional, vec3(1.0f), {0.0f, 0.0f, -1.0f});
+  const Picture p(s);
+  expect_near(p.at(12, 3), vec3(0.0f), 1e-6f);
+  expect_near(p.at(3, 12), vec3(0.5f), 1e-6f);
+}
+
 TEST(Render, GlassTintsItsShadow) {
   // Listing 8b: transparency * (1 - diffuse), twice for two panes.
   SceneMaker s;

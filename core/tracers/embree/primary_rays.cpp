@@ -79,8 +79,8 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
       store_miss(rt.scene(), rays[lane], i, out);
     } else {
       store_hit(rt, camera,
-                {static_cast<int>(packet.hit.instID[0][lane]), packet.hit.primID[lane],
-                 vec2(packet.hit.u[lane], packet.hit.v[lane])},
+                rt.resolve(packet.hit.instID[0][lane], packet.hit.geomID[lane],
+                           packet.hit.primID[lane], vec2(packet.hit.u[lane], packet.hit.v[lane])),
                 i, out);
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/rt_scene.h"
+#include "tracers/embree/shadow_query.h"
 
 namespace kestrel {
 

@@ -186,9 +186,9 @@ void TileTracer::shade_hit(const Path& path, const RTCRayHit& ray) {
     sum += path.throughput * sample_world(scene_, path.direction);
     return;
   }
-  const int object = static_cast<int>(ray.hit.instID[0]);
-  Surface s = evaluate_surface(scene_, {object, ray.hit.primID, vec2(ray.hit.u, ray.hit.v)},
-                               rt_.normal_from_object(object));
+  const SurfaceHit hit =
+      rt_.resolve(ray.hit.instID[0], ray.hit.geomID, ray.hit.primID, vec2(ray.hit.u, ray.hit.v));
+  Surface s = evaluate_surface(scene_, hit, rt_.normal_from_object(hit.object));
   const bool entering = glm::dot(s.normal_geometric, path.direction) < 0.0f;
   const vec3 to_viewer = -path.direction;
   face_viewer(s, to_viewer);
