@@ -39,6 +39,7 @@ class Session:
         self.sent = {}              # (kind, id): what was sent last
         self.sent_settings = set()  # units that were given settings
         self.warned = set()         # texts that were already said
+        self.means = {}             # (kind of mean, texture, its content): mean colour
         self._busy = threading.Lock()
 
     def render(self, width, height, progress):

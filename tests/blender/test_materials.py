@@ -7,6 +7,7 @@ import unittest
 import bpy
 import numpy as np
 from kestrel.sync import material as sync_material
+from kestrel.sync.image import mean_color
 from kestrel.sync.material import read_surface
 from mathutils import Matrix
 from support import (SceneTest, diffuse, emission, image, new_material, shader_material, textured)
@@ -21,7 +22,8 @@ except RuntimeError:
 
 def read(material, warnings=None, environment_ior=1.0):
     said = [] if warnings is None else warnings
-    return read_surface(material, environment_ior, said.append)
+    return read_surface(material, environment_ior, said.append,
+                        lambda texture: mean_color(texture.image))
 
 
 def principled(name, **inputs):
@@ -285,11 +287,17 @@ class GraphTest(SceneTest):
         np.testing.assert_allclose((*found.tiling, *found.offset), (1 / 2, 1 / 3, -1 / 8, -1 / 6),
                                    rtol=1e-6)
 
-    def test_cyclic_groups_end(self):
-        a = bpy.data.node_groups.new("Loop", "ShaderNodeTree")
-        nodes = [a.nodes.new("ShaderNodeMixShader") for _ in range(2)]
-        a.links.new(nodes[0].outputs[0], nodes[1].inputs[1])
-        a.links.new(nodes[1].outputs[0], nodes[0].inputs[1])
+    def test_images_tint_reflections_by_their_mean(self):
+        material, texture = textured("Gold", checker(), GLOSSY)
+        node = texture.outputs["Color"].links[0].to_node
+        node.inputs["Roughness"].default_value = 0.0
+        warnings = []
+        surface = read(material, warnings)
+        self.assertAlmostEqual(surface.reflectivity, 0.5, 5)  # half red, half green
+        np.testing.assert_allclose(surface.reflection_color, (1, 1, 0), atol=1e-6)
+        self.assertRegex(warnings[0], "mean colour of 'Checker' tints its rays")
+
+    def test_cyclic_links_end(self):
         material, tree, output = new_material("Cycle")
         mixes = [tree.nodes.new("ShaderNodeMixShader") for _ in range(2)]
         tree.links.new(mixes[0].outputs[0], mixes[1].inputs[1])
@@ -342,6 +350,22 @@ class PictureTest(SceneTest):
         self.assert_color(picture[24, 8], (1, 0, 0), 1e-2)
         self.assert_color(picture[24, 24], (0, 1, 0), 1e-2)
         self.assert_color(picture[8, 8], (0, 0, 1))
+
+    def test_threshold_of_clipped_alpha(self):
+        material, texture = textured("Soft", checker(), "ShaderNodeBsdfPrincipled")
+        if not hasattr(material, "alpha_threshold"):
+            self.skipTest("this Blender has no threshold")
+        pixels = np.ones((4, 4, 4), np.float32)
+        pixels[..., 3] = 0.4
+        texture.image = image("Thin", pixels)
+        tree = material.node_tree
+        tree.links.new(texture.outputs["Alpha"], tree.nodes["Principled BSDF"].inputs["Alpha"])
+        self.scene.view_layers[0].use_pass_z = True
+        self.plane("Plane", 4, material)
+        for threshold, depth in ((0.3, 9.0), (0.5, 1e10)):
+            material.blend_method, material.alpha_threshold = "CLIP", threshold
+            planes = self.render_planes()
+            self.assertAlmostEqual(float(planes["ViewLayer.Depth.Z"][16, 16]) / depth, 1.0, 4)
 
     def test_mask_by_other_images(self):
         """Holes from an image of another size, by its alpha or brightness, either way round."""

@@ -37,12 +37,15 @@ def is_srgb(image, warn):
 def pixels(image):
     """(height, width, 4) of an image, row 0 at the bottom: uint8 as stored, or float32. None where
     the image has no pixels (its file is missing)."""
+    was_loaded = image.has_data
     width, height = image.size
     if width == 0 or height == 0:
         return None
     values = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(values)
     values = values.reshape(height, width, image.channels)
+    if not was_loaded and image.source == "FILE" and not image.is_dirty:
+        image.buffers_free()  # give back the memory that only this reading took
     if image.channels != 4:
         rgba = np.ones((height, width, 4), np.float32)
         count = min(image.channels, 3)
@@ -150,19 +153,43 @@ def sync_texture(export, texture):
     return export.textures[key]
 
 
-def mean_radiance(image):
-    """Mean of an equirectangular image over the sphere: rows weighted by their solid angle."""
+def _linear_sample(image):
+    """float64 (h, w, 3) of an image, linear, thinned out evenly to about 512 texels a side; None
+    where it has no pixels."""
     values = pixels(image)
     if values is None:
-        return 0.0, 0.0, 0.0
-    height, width = values.shape[:2]
-    step = max(1, min(height, width) // 512)  # half a degree is enough
-    rows = values[step // 2::step, step // 2::step, :3].astype(np.float64)
+        return None
+    step = max(1, min(values.shape[:2]) // 512)
+    colors = values[step // 2::step, step // 2::step, :3].astype(np.float64)
     if values.dtype == np.uint8:
-        rows /= 255.0
+        colors /= 255.0
         if is_srgb(image, lambda _text: None):
-            rows = np.where(rows <= 0.04045, rows / 12.92, ((rows + 0.055) / 1.055) ** 2.4)
-    latitude = (np.arange(len(rows)) + 0.5) / len(rows) * np.pi
+            colors = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
+    return colors
+
+
+def mean_color(image):
+    """Mean of an image's texels, linear; white where it has none."""
+    colors = _linear_sample(original(image))
+    return (1.0, 1.0, 1.0) if colors is None else tuple(map(float, colors.mean(axis=(0, 1))))
+
+
+def mean_radiance(image):
+    """Mean of an equirectangular image over the sphere: rows weighted by their solid angle; black
+    where it has no texels."""
+    colors = _linear_sample(original(image))
+    if colors is None:
+        return 0.0, 0.0, 0.0
+    latitude = (np.arange(len(colors)) + 0.5) / len(colors) * np.pi
     weights = np.sin(latitude)
-    return tuple(float(c) for c in
-                 (rows.mean(axis=1) * weights[:, None]).sum(axis=0) / weights.sum())
+    return tuple(map(float, (colors.mean(axis=1) * weights[:, None]).sum(axis=0) / weights.sum()))
+
+
+def cached_mean(export, texture, mean):
+    """mean(image), worked out again only when what the texture shows has changed."""
+    ident = sync_texture(export, texture)
+    key = (mean.__name__, ident, export.session.sent[capi.KIND_TEXTURE, ident])
+    means = export.session.means
+    if key not in means:
+        means[key] = mean(texture.image)
+    return means[key]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 from .. import compat
 from ..native import capi
 from . import nodes
-from .image import sync_texture
+from .image import cached_mean, mean_color, sync_texture
 from .nodes import BLACK, WHITE, Value, sum_values
 
 MIRROR_ROUGHNESS = 0.05  # below, a reflection is taken for exact
@@ -63,18 +63,18 @@ def sharpness(roughness):
     return 1.0 if roughness < MIRROR_ROUGHNESS else (1.0 - roughness) ** 2
 
 
-def reflection(value, roughness, weight=1.0):
-    """A metal or Glossy BSDF of this colour. An image's colour cannot tint reflections: its factor
-    does, and the image goes to the ambient part."""
-    peak = max(value.color)
+def reflection(value, tint, roughness, weight=1.0):
+    """A metal or Glossy BSDF of this colour. An image cannot tint reflections point by point: its
+    mean colour, `tint`, does, and the image goes to the ambient part."""
+    peak = max(tint)
     if peak <= 0.0 or weight <= 0.0:
         return Surface()
     share = sharpness(roughness)
     rest = value.scaled(weight * (1.0 - share))
-    specular, exponent = highlight(rest.color, roughness)
+    specular, exponent = highlight(tuple(c * weight * (1.0 - share) for c in tint), roughness)
     return Surface(ambient=rest, specular=specular, exponent=exponent,
                    reflectivity=min(peak * share * weight, 1.0),
-                   reflection_color=tuple(c / peak for c in value.color))
+                   reflection_color=tuple(c / peak for c in tint))
 
 
 def interface(color, ior, weight=1.0):
@@ -134,11 +134,13 @@ def mix(a, b, factor):
 # ---- nodes -----------------------------------------------------------------------------------
 
 class Shaders:
-    """Turns shader nodes into Surfaces. `environment_ior` is the surroundings' index."""
+    """Turns shader nodes into Surfaces. `environment_ior` is the surroundings' index,
+    `mean_of(texture)` the mean colour of what a texture shows."""
 
-    def __init__(self, reader, environment_ior):
+    def __init__(self, reader, environment_ior, mean_of):
         self.reader = reader
         self.environment_ior = environment_ior
+        self.mean_of = mean_of
 
     def surface(self, socket, stack=(), depth=0):
         node, _, above = self.reader.source(socket, stack)
@@ -162,13 +164,13 @@ class Shaders:
         socket = compat.node_input(node, *names)
         return Value() if socket is None else self.reader.color(socket, stack)
 
-    def _tint(self, node, stack, *names):
-        """A colour that no image can take part in."""
-        value = self._color(node, stack, *names)
-        if value.texture:
-            self.reader.unsupported(
-                node, f"its image '{value.texture.image.name}' does not tint rays")
-        return value.color
+    def _tint(self, value, node):
+        """One colour for rays, which cannot be tinted point by point."""
+        if value.texture is None:
+            return value.color
+        self.reader.unsupported(
+            node, f"the mean colour of '{value.texture.image.name}' tints its rays")
+        return tuple(c * m for c, m in zip(value.color, self.mean_of(value.texture)))
 
     def _bump(self, surface, node, stack):
         """The surface with what is linked to the node's Normal."""
@@ -192,8 +194,8 @@ class Shaders:
         return self._bump(Surface(ambient=value, diffuse=value), node, stack)
 
     def _glossy(self, node, stack, _depth):
-        surface = reflection(self._color(node, stack, "Color"),
-                             self._roughness(node, stack))
+        value = self._color(node, stack, "Color", "Base Color")
+        surface = reflection(value, self._tint(value, node), self._roughness(node, stack))
         return self._bump(surface, node, stack)
 
     def _roughness(self, node, stack):
@@ -202,7 +204,7 @@ class Shaders:
         return self._number(node, stack, "Roughness")
 
     def _glass(self, node, stack, _depth):
-        surface = interface(self._tint(node, stack, "Color"),
+        surface = interface(self._tint(self._color(node, stack, "Color"), node),
                             max(self._number(node, stack, "IOR", default=1.0), 0.1))
         return self._bump(surface, node, stack)
 
@@ -211,7 +213,7 @@ class Shaders:
 
     def _transparent(self, node, stack, _depth):
         return Surface(opacity=0.0, ior=self.environment_ior, transparent=True,
-                       transmission_color=self._tint(node, stack, "Color"))
+                       transmission_color=self._tint(self._color(node, stack, "Color"), node))
 
     def _emission(self, node, stack, _depth):
         strength = self._number(node, stack, "Strength", default=1.0)
@@ -235,9 +237,10 @@ class Shaders:
         surface = Surface(ambient=matte, diffuse=matte)
         specular, exponent = highlight((f0,) * 3, roughness)
         surface = add(surface, Surface(specular=specular, exponent=exponent))
-        surface = add(surface, reflection(base, roughness, metallic))
+        tint = self._tint(base, node) if metallic > 0.0 or clear > 0.0 else base.color
+        surface = add(surface, reflection(base, tint, roughness, metallic))
         if clear > 0.0:
-            surface = add(surface, interface(base.color, ior, clear))
+            surface = add(surface, interface(tint, ior, clear))
         strength = max(self._number(node, stack, "Emission Strength", default=1.0), 0.0)
         if strength > 0.0:
             glow = self._color(node, stack, "Emission Color", "Emission").scaled(strength)
@@ -313,17 +316,17 @@ class Shaders:
     }
 
 
-def read_surface(material, environment_ior, warn):
-    """The Surface of a Blender material."""
+def read_surface(material, environment_ior, warn, mean_of):
+    """The Surface of a Blender material; the arguments are those of Shaders and Reader."""
     if not compat.uses_nodes(material):
         value = Value(nodes.constant(material.diffuse_color))
         return add(Surface(ambient=value, diffuse=value),
-                   reflection(value, material.roughness, material.metallic))
+                   reflection(value, value.color, material.roughness, material.metallic))
     output = nodes.output_node(material.node_tree, "OUTPUT_MATERIAL")
     if output is None:
         return Surface()
     reader = nodes.Reader(f"Material '{material.name}'", warn)
-    return Shaders(reader, environment_ior).surface(output.inputs["Surface"])
+    return Shaders(reader, environment_ior, mean_of).surface(output.inputs["Surface"])
 
 
 # ---- sending ---------------------------------------------------------------------------------
@@ -371,7 +374,8 @@ def sync_material(export, material):
         return 0
     key = compat.datablock_key(material)
     if key not in export.materials:
-        surface = read_surface(material, export.environment_ior, export.warn)
+        surface = read_surface(material, export.environment_ior, export.warn,
+                               lambda texture: cached_mean(export, texture, mean_color))
         item = describe(export, material, surface)
         ident = export.new_id(capi.KIND_MATERIAL, key)
         export.put(capi.KIND_MATERIAL, ident, capi.content(item),

@@ -38,7 +38,7 @@ def arrays(mesh, slot_count):
     def per_corner(values):
         if values is None:
             return None
-        return np.ascontiguousarray(values if corners is None else values[corners])
+        return values if corners is None else np.take(values, corners, axis=0)
 
     triangles = per_corner(compat.corner_vertices(mesh)).astype(np.uint32).reshape(-1, 3)
     layer = render_uv_layer(mesh)

@@ -12,7 +12,7 @@ from mathutils import Matrix
 from .. import compat
 from ..native import capi
 from . import nodes
-from .image import mean_radiance, sync_texture
+from .image import cached_mean, mean_radiance, sync_texture
 
 
 def _background(reader, socket, stack=(), depth=0):
@@ -69,12 +69,12 @@ def _image_world(export, node, stack, reader, factor, item):
         reader.unsupported(node, "its image is taken as equirectangular")
     item.kind = capi.WORLD_EQUIRECTANGULAR
     item.color[:] = factor
-    item.textures[0] = sync_texture(export, nodes.Texture(
-        node.image, node.interpolation == "Closest", capi.EXTENSION_REPEAT))
+    texture = nodes.Texture(node.image, node.interpolation == "Closest", capi.EXTENSION_REPEAT)
+    item.textures[0] = sync_texture(export, texture)
     turn = rotation(reader, node.inputs["Vector"], stack)
     item.map_from_world[:] = [value for column in turn.col for value in column]
-    image = node.image.original if node.image.is_evaluated else node.image
-    return tuple(f * c for f, c in zip(factor, mean_radiance(image)))
+    mean = cached_mean(export, texture, mean_radiance)
+    return tuple(f * c for f, c in zip(factor, mean))
 
 
 def _fill(export, world, item):
