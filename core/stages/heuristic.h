@@ -18,6 +18,8 @@ class HeuristicStage {
   /// what it selects is the next run's S. `Settings::selection` may bypass the graph (all, none);
   /// EffectMode overrides are honoured: `always` effects are traced whatever the budget and their
   /// cost is taken off it first, `never` ones are neither traced nor counted in Q.
+  /// `selected` says whether the effects that a unit leaves to the heuristic are traced; of a unit
+  /// that leaves it none, whether there are any.
   /// A budget needs costs: while they are unknown, all visible units are selected, for the probe
   /// to measure, and this does not count as S.
   Selection run(const FrameInputs& inputs, GBuffer& gbuffer);
