@@ -24,6 +24,7 @@ const std::array<float, 256>& srgb_to_linear() {
   return table;
 }
 
+/// Texel row or column that an index means, kNone outside a clipped texture.
 int wrap(int i, int n, Extension extension) {
   if (static_cast<unsigned>(i) < static_cast<unsigned>(n)) return i;
   if (extension == Extension::repeat) {
@@ -34,25 +35,29 @@ int wrap(int i, int n, Extension extension) {
   return kNone;
 }
 
-vec4 texel(const Texture& t, int x, int y) {
-  x = wrap(x, t.width, t.extension);
-  y = wrap(y, t.height, t.extension);
-  if (x < 0 || y < 0) return vec4(0.0f);
-  const size_t i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(t.width) + x);
-  if (!t.texels_float.empty()) {
-    const float* p = &t.texels_float[i];
-    return {p[0], p[1], p[2], p[3]};
-  }
-  const uint8_t* p = &t.texels8[i];
+vec4 linear8(const Texture& t, const uint8_t* p) {
   if (!t.srgb) return vec4(p[0], p[1], p[2], p[3]) * kFromByte;
   static const std::array<float, 256>& linear = srgb_to_linear();
   return {linear[p[0]], linear[p[1]], linear[p[2]], p[3] * kFromByte};
+}
+
+vec4 texel(const Texture& t, int x, int y) {
+  if (x < 0 || y < 0) return vec4(0.0f);
+  const size_t i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(t.width) + x);
+  if (t.texels_float.empty()) return linear8(t, &t.texels8[i]);
+  const float* p = &t.texels_float[i];
+  return {p[0], p[1], p[2], p[3]};
 }
 
 /// Texel coordinate of a texture coordinate, kept where an int can hold it.
 float texel_coordinate(float u, int size, Extension extension) {
   if (extension == Extension::repeat) u -= std::floor(u);
   return glm::clamp(u * static_cast<float>(size), -1e6f, 1e6f);
+}
+
+int floor_to_int(float x) {
+  const int i = static_cast<int>(x);
+  return i - (static_cast<float>(i) > x);
 }
 
 }  // namespace
@@ -63,14 +68,16 @@ vec4 sample_texture(const Texture& t, const vec2& uv) {
   const float x = texel_coordinate(uv.x, t.width, t.extension);
   const float y = texel_coordinate(uv.y, t.height, t.extension);
   if (t.nearest) {
-    return texel(t, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+    return texel(t, wrap(floor_to_int(x), t.width, t.extension),
+                 wrap(floor_to_int(y), t.height, t.extension));
   }
-  const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f);
-  const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
-  const float ax = x - 0.5f - fx, ay = y - 0.5f - fy;
-  const vec4 low = glm::mix(texel(t, ix, iy), texel(t, ix + 1, iy), ax);
-  const vec4 high = glm::mix(texel(t, ix, iy + 1), texel(t, ix + 1, iy + 1), ax);
-  return glm::mix(low, high, ay);
+  const int left = floor_to_int(x - 0.5f), low = floor_to_int(y - 0.5f);
+  const float across = x - 0.5f - static_cast<float>(left);
+  const float up = y - 0.5f - static_cast<float>(low);
+  const int x0 = wrap(left, t.width, t.extension), x1 = wrap(left + 1, t.width, t.extension);
+  const int y0 = wrap(low, t.height, t.extension), y1 = wrap(low + 1, t.height, t.extension);
+  return glm::mix(glm::mix(texel(t, x0, y0), texel(t, x1, y0), across),
+                  glm::mix(texel(t, x0, y1), texel(t, x1, y1), across), up);
 }
 
 vec3 sample_world(const Scene& scene, const vec3& direction_ws) {

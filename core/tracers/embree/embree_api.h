@@ -11,6 +11,11 @@
 
 namespace kestrel::embree {
 
+/// Rays of one packet; Embree splits them where the processor's vectors are narrower.
+inline constexpr int kPacket = 16;
+using RayPacket = RTCRay16;
+using RayHitPacket = RTCRayHit16;
+
 #if KESTREL_EMBREE_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 #else
@@ -56,17 +61,13 @@ inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
   RTCIntersectArguments arguments = intersect_arguments(query);
   rtcIntersect1(scene, &ray, &arguments);
 }
-inline void intersect8(RTCScene scene, Query& query, const int* valid, RTCRayHit8& rays) {
+inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
   RTCIntersectArguments arguments = intersect_arguments(query);
-  rtcIntersect8(valid, scene, &rays, &arguments);
+  rtcIntersect16(valid, scene, &rays, &arguments);
 }
-inline void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
+inline void occluded(RTCScene scene, Query& query, const int* valid, RayPacket& rays) {
   RTCOccludedArguments arguments = occluded_arguments(query);
-  rtcOccluded1(scene, &ray, &arguments);
-}
-inline void occluded8(RTCScene scene, Query& query, const int* valid, RTCRay8& rays) {
-  RTCOccludedArguments arguments = occluded_arguments(query);
-  rtcOccluded8(valid, scene, &rays, &arguments);
+  rtcOccluded16(valid, scene, &rays, &arguments);
 }
 
 #else
@@ -74,14 +75,11 @@ inline void occluded8(RTCScene scene, Query& query, const int* valid, RTCRay8& r
 inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
   rtcIntersect1(scene, &query.context, &ray);
 }
-inline void intersect8(RTCScene scene, Query& query, const int* valid, RTCRayHit8& rays) {
-  rtcIntersect8(valid, scene, &query.context, &rays);
+inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
+  rtcIntersect16(valid, scene, &query.context, &rays);
 }
-inline void occluded1(RTCScene scene, Query& query, RTCRay& ray) {
-  rtcOccluded1(scene, &query.context, &ray);
-}
-inline void occluded8(RTCScene scene, Query& query, const int* valid, RTCRay8& rays) {
-  rtcOccluded8(valid, scene, &query.context, &rays);
+inline void occluded(RTCScene scene, Query& query, const int* valid, RayPacket& rays) {
+  rtcOccluded16(valid, scene, &query.context, &rays);
 }
 
 #endif

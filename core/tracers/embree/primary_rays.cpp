@@ -11,9 +11,9 @@
 namespace kestrel {
 namespace {
 
-/// Pixels of one packet: 4 wide, 2 high.
+/// Pixels of one packet.
 constexpr int kPacketWidth = 4;
-constexpr int kPacketHeight = 2;
+constexpr int kPacketHeight = embree::kPacket / kPacketWidth;
 constexpr int kTile = 32;
 
 void store_miss(const Scene& scene, const CameraRay& ray, size_t i, GBuffer& out) {
@@ -47,10 +47,10 @@ void store_hit(const RtScene& rt, const CameraRays& camera, const SurfaceHit& hi
 }
 
 void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, GBuffer& out) {
-  alignas(32) int valid[8];
-  alignas(32) RTCRayHit8 packet;
-  CameraRay rays[8];
-  for (int lane = 0; lane < 8; ++lane) {
+  alignas(64) int valid[embree::kPacket];
+  alignas(64) embree::RayHitPacket packet;
+  CameraRay rays[embree::kPacket];
+  for (int lane = 0; lane < embree::kPacket; ++lane) {
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
     valid[lane] = x < out.width && y < out.height ? -1 : 0;
     const CameraRay& r = rays[lane] = camera.ray(x, y);
@@ -70,8 +70,8 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
   }
   embree::Query query(true);
-  embree::intersect8(rt.handle(), query, valid, packet);
-  for (int lane = 0; lane < 8; ++lane) {
+  embree::intersect(rt.handle(), query, valid, packet);
+  for (int lane = 0; lane < embree::kPacket; ++lane) {
     if (valid[lane] == 0) continue;
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
     const size_t i = static_cast<size_t>(y) * static_cast<size_t>(out.width) + x;

@@ -7,9 +7,9 @@ namespace kestrel {
 
 void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance,
                        const Task& task) {
-  const size_t lane = tasks_.size() % 8;
+  const size_t lane = tasks_.size() % embree::kPacket;
   if (lane == 0) packets_.emplace_back();
-  RTCRay8& packet = packets_.back();
+  embree::RayPacket& packet = packets_.back();
   packet.org_x[lane] = origin.x;
   packet.org_y[lane] = origin.y;
   packet.org_z[lane] = origin.z;
@@ -30,9 +30,11 @@ double ShadowQueue::trace(const RtScene& scene, bool coherent) {
   const auto begin = std::chrono::steady_clock::now();
   embree::ShadowQuery query(coherent, states_.data());
   for (size_t p = 0; p < packets_.size(); ++p) {
-    alignas(32) int valid[8];
-    for (size_t lane = 0; lane < 8; ++lane) valid[lane] = 8 * p + lane < tasks_.size() ? -1 : 0;
-    embree::occluded8(scene.handle(), query, valid, packets_[p]);
+    alignas(64) int valid[embree::kPacket];
+    for (size_t lane = 0; lane < embree::kPacket; ++lane) {
+      valid[lane] = embree::kPacket * p + lane < tasks_.size() ? -1 : 0;
+    }
+    embree::occluded(scene.handle(), query, valid, packets_[p]);
   }
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
       .count();

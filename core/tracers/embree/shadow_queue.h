@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow rays, gathered and traced in packets of eight.
+// Shadow rays, gathered and traced in packets.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ class ShadowQueue {
   double resolve(const RtScene& scene, bool coherent, Receive&& receive) {
     const double ms = trace(scene, coherent);
     for (size_t i = 0; i < tasks_.size(); ++i) {
-      const bool blocked = packets_[i / 8].tfar[i % 8] < 0.0f;
+      const bool blocked = packets_[i / embree::kPacket].tfar[i % embree::kPacket] < 0.0f;
       receive(tasks_[i], blocked ? vec3(0.0f) : states_[i].transmitted);
     }
     packets_.clear();
@@ -39,7 +39,7 @@ class ShadowQueue {
  private:
   double trace(const RtScene& scene, bool coherent);
 
-  std::vector<RTCRay8> packets_;
+  std::vector<embree::RayPacket> packets_;
   std::vector<Task> tasks_;
   std::vector<embree::ShadowState> states_;
 };

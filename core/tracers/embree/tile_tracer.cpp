@@ -65,41 +65,47 @@ void TileTracer::trace(int x0, int y0) {
   while (!paths_.empty()) trace_depth();
 }
 
+/// In blocks of 4 x 4, so that a packet's rays stay close together.
 void TileTracer::gather_pixels(int x0, int y0) {
+  constexpr int kBlock = 4, kBlocks = kSize / kBlock;
   pixels_.clear();
   const GBuffer& g = request_.gbuffer;
-  const int x1 = std::min(x0 + kSize, g.width), y1 = std::min(y0 + kSize, g.height);
   const int stride = request_.pixel_stride;
-  for (int y = y0; y < y1; ++y) {
-    if (y % stride != 0) continue;
-    for (int x = x0; x < x1; ++x) {
-      if (x % stride != 0) continue;
-      const uint32_t i = static_cast<uint32_t>(y) * static_cast<uint32_t>(g.width) + x;
-      if (g.object[i] == 0) continue;
-      const uint32_t unit = unit_of(i);
-      const uint8_t effects = request_.selection.units[unit].effects;
-      if (effects == 0) continue;
-      const Material& material = scene_.materials[g.material[i]];
-      Pixel p{i, unit, {}, camera_.to_viewer(g.position[i])};
-      p.surface = {g.position[i],
-                   g.normal[i],
-                   g.normal_geometric[i],
-                   g.emission[i],
-                   g.ambient[i],
-                   g.diffuse[i],
-                   g.specular[i],
-                   g.optical[i],
-                   material.reflection_color,
-                   material.transmission_color};
-      p.entering = glm::dot(p.surface.normal_geometric, p.to_viewer) >= 0.0f;
-      face_viewer(p.surface, p.to_viewer);
-      p.reflectivity = effects & kReflections ? p.surface.optical.x : 0.0f;
-      p.transparency = effects & kRefractions ? 1.0f - p.surface.optical.z : 0.0f;
-      p.needs_lighting =
-          (effects & kShadows) && blend_weights(p.reflectivity, p.transparency).surface > 0.0f;
-      pixels_.push_back(p);
+  for (int i = 0; i < kSize * kSize; ++i) {
+    const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
+    const int x = x0 + block % kBlocks * kBlock + within % kBlock;
+    const int y = y0 + block / kBlocks * kBlock + within / kBlock;
+    if (x < g.width && y < g.height && x % stride == 0 && y % stride == 0) {
+      gather_pixel(static_cast<uint32_t>(y) * static_cast<uint32_t>(g.width) + x);
     }
   }
+}
+
+void TileTracer::gather_pixel(uint32_t i) {
+  const GBuffer& g = request_.gbuffer;
+  if (g.object[i] == 0) return;
+  const uint32_t unit = unit_of(i);
+  const uint8_t effects = request_.selection.units[unit].effects;
+  if (effects == 0) return;
+  const Material& material = scene_.materials[g.material[i]];
+  Pixel p{i, unit, {}, camera_.to_viewer(g.position[i])};
+  p.surface = {g.position[i],
+               g.normal[i],
+               g.normal_geometric[i],
+               g.emission[i],
+               g.ambient[i],
+               g.diffuse[i],
+               g.specular[i],
+               g.optical[i],
+               material.reflection_color,
+               material.transmission_color};
+  p.entering = glm::dot(p.surface.normal_geometric, p.to_viewer) >= 0.0f;
+  face_viewer(p.surface, p.to_viewer);
+  p.reflectivity = effects & kReflections ? p.surface.optical.x : 0.0f;
+  p.transparency = effects & kRefractions ? 1.0f - p.surface.optical.z : 0.0f;
+  p.needs_lighting =
+      (effects & kShadows) && blend_weights(p.reflectivity, p.transparency).surface > 0.0f;
+  pixels_.push_back(p);
 }
 
 void TileTracer::trace_primary_shadows() {

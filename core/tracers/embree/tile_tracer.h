@@ -50,6 +50,7 @@ class TileTracer {
   };
 
   void gather_pixels(int x0, int y0);
+  void gather_pixel(uint32_t index);
   void trace_primary_shadows();
   void start_paths();
   void trace_depth();
