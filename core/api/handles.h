@@ -3,6 +3,7 @@
 // address: whatever a host passes is looked up, so a stale or mixed-up handle is an error.
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -38,8 +39,10 @@ struct RendererState {
 
   const std::shared_ptr<SceneState> scene;
   Renderer renderer;
-  std::mutex mutex;  // guards what follows; while `busy`, only the rendering thread has `renderer`
-  bool busy = false;
+  std::mutex mutex;        // guards what follows
+  bool rendering = false;  // `renderer` belongs to the thread that renders
+  int readers = 0;         // of the last frame; short, so a frame waits for them
+  std::condition_variable readers_left;
   bool cancelled = false;
 };
 

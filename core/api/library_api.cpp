@@ -23,6 +23,11 @@ std::shared_mutex& log_mutex() {
 
 thread_local bool inside_log_callback = false;
 
+struct InsideLogCallback {
+  InsideLogCallback() { inside_log_callback = true; }
+  ~InsideLogCallback() { inside_log_callback = false; }
+};
+
 struct LogTarget {
   KestrelLogCallback callback = nullptr;
   void* user = nullptr;
@@ -33,10 +38,9 @@ void send_to_callback(log::Level level, std::string_view text) {
   if (inside_log_callback) return;
   const std::shared_lock lock(log_mutex());
   if (!log_target.callback) return;
-  inside_log_callback = true;
+  const InsideLogCallback inside;
   log_target.callback(log_target.user, static_cast<KestrelLogLevel>(level),
                       std::string(text).c_str());
-  inside_log_callback = false;
 }
 
 }  // namespace

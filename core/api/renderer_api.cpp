@@ -17,24 +17,55 @@ namespace {
 
 constexpr int kMaxSide = 65536;  // pixels
 
-/// Has the renderer to itself; another that wants it meanwhile gets an error instead of waiting.
-class Exclusive {
+[[noreturn]] void refuse_while_rendering() {
+  fail(ErrorCode::invalid_operation,
+       "The renderer is busy with a frame. Wait for it, or stop it with kestrelCancel().");
+}
+
+/// Has the renderer to itself while it lives. Refused where another frame is under way.
+class RenderScope {
  public:
-  explicit Exclusive(RendererState& state) : state_(state) {
-    const std::lock_guard lock(state.mutex);
-    if (state.busy) {
-      fail(ErrorCode::invalid_operation,
-           "The renderer is busy with a frame. Wait for it, or stop it with kestrelCancel().");
-    }
-    state.busy = true;
+  explicit RenderScope(RendererState& state) : state_(state) {
+    std::unique_lock lock(state.mutex);
+    if (state.rendering) refuse_while_rendering();
+    state.rendering = true;
     state.cancelled = false;
+    state.readers_left.wait(lock, [&] { return state.readers == 0; });
   }
-  ~Exclusive() {
+  ~RenderScope() {
     const std::lock_guard lock(state_.mutex);
-    state_.busy = false;
+    state_.rendering = false;
   }
-  Exclusive(const Exclusive&) = delete;
-  Exclusive& operator=(const Exclusive&) = delete;
+  RenderScope(const RenderScope&) = delete;
+  RenderScope& operator=(const RenderScope&) = delete;
+
+ private:
+  RendererState& state_;
+};
+
+/// The last frame stays as it is while this lives. Refused while a frame is under way, and before
+/// the first one.
+class ReadScope {
+ public:
+  explicit ReadScope(RendererState& state) : state_(state) {
+    const std::lock_guard lock(state.mutex);
+    if (state.rendering) refuse_while_rendering();
+    if (film().width() == 0) {
+      fail(ErrorCode::invalid_operation,
+           "There is no frame yet. Call kestrelRender() first, and check that it succeeds.");
+    }
+    ++state.readers;
+  }
+  ~ReadScope() {
+    const std::lock_guard lock(state_.mutex);
+    --state_.readers;
+    state_.readers_left.notify_all();
+  }
+  ReadScope(const ReadScope&) = delete;
+  ReadScope& operator=(const ReadScope&) = delete;
+
+  const Film& film() const { return state_.renderer.film(); }
+  const std::string& stats_json() const { return state_.renderer.stats_json(); }
 
  private:
   RendererState& state_;
@@ -52,15 +83,6 @@ std::shared_ptr<const Scene> published_scene(SceneState& state) {
          "The scene was never committed. Call kestrelCommitScene() before kestrelRender().");
   }
   return state.published;
-}
-
-const Film& finished_film(const RendererState& state) {
-  const Film& film = state.renderer.film();
-  if (film.width() == 0) {
-    fail(ErrorCode::invalid_operation,
-         "There is no frame yet. Call kestrelRender() first, and check that it succeeds.");
-  }
-  return film;
 }
 
 const PassInfo& find_pass(std::string_view name) {
@@ -114,7 +136,7 @@ KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
            kMaxSide);
     }
     const auto scene = published_scene(*state->scene);
-    const Exclusive exclusive(*state);
+    const RenderScope scope(*state);
     // Also tells a renderer that had not begun yet when kestrelCancel() was called.
     const Progress report = [&](float fraction, std::string_view status) {
       if (is_cancelled(*state)) return false;
@@ -128,7 +150,7 @@ void kestrelCancel(KestrelRenderer renderer) {
   guarded([&] {
     const auto state = renderers().get(renderer);
     const std::lock_guard lock(state->mutex);
-    if (!state->busy) return;
+    if (!state->rendering) return;
     state->cancelled = true;
     state->renderer.cancel();
   });
@@ -139,8 +161,8 @@ KestrelError kestrelGetFrameSize(KestrelRenderer renderer, int* width, int* heig
     const auto state = renderers().get(renderer);
     require(width, "width");
     require(height, "height");
-    const Exclusive exclusive(*state);
-    const Film& film = finished_film(*state);
+    const ReadScope frame(*state);
+    const Film& film = frame.film();
     *width = film.width();
     *height = film.height();
   });
@@ -177,8 +199,8 @@ KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* 
     const auto state = renderers().get(renderer);
     const PassInfo& pass = find_pass(require(name, "name"));
     require(pixels, "pixels");
-    const Exclusive exclusive(*state);
-    const Film& film = finished_film(*state);
+    const ReadScope frame(*state);
+    const Film& film = frame.film();
     const size_t channels = std::strlen(pass.channels);
     const size_t expected =
         channels * static_cast<size_t>(film.width()) * static_cast<size_t>(film.height());
@@ -196,9 +218,8 @@ const char* kestrelGetStats(KestrelRenderer renderer) {
   return guarded_or(static_cast<const char*>(nullptr), [&] {
     thread_local std::string stats;
     const auto state = renderers().get(renderer);
-    const Exclusive exclusive(*state);
-    finished_film(*state);
-    stats = state->renderer.stats_json();
+    const ReadScope frame(*state);
+    stats = frame.stats_json();
     return stats.c_str();
   });
 }
@@ -208,8 +229,8 @@ KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path, const
     const auto state = renderers().get(renderer);
     require(path, "path");
     const auto chosen = parse_passes(require(passes, "passes"));
-    const Exclusive exclusive(*state);
-    const Film& film = finished_film(*state);
+    const ReadScope frame(*state);
+    const Film& film = frame.film();
     std::vector<std::vector<float>> values;
     std::vector<images::Layer> layers;
     for (const PassInfo* pass : chosen) {

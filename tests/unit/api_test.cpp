@@ -609,6 +609,32 @@ TEST_F(Api, ABusyRendererRefusesInsteadOfWaiting) {
   EXPECT_EQ(w.refused, 2);
 }
 
+TEST_F(Api, ReadersNeverMakeAFrameFail) {
+  set_glowing_square();
+  expect_ok(kestrelRender(renderer, 4, 4, nullptr, nullptr));
+  std::atomic<bool> done = false;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 2; ++i) {
+    readers.emplace_back([&] {
+      std::vector<float> pixels(4 * 4 * 4);
+      while (!done) {
+        const KestrelError result =
+            kestrelReadPass(renderer, "Combined", pixels.data(), pixels.size());
+        if (result == KESTREL_ERROR_NONE) {
+          EXPECT_EQ(pixels[2], 2.0f);
+        } else {
+          EXPECT_EQ(result, KESTREL_ERROR_INVALID_OPERATION);
+        }
+      }
+    });
+  }
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_EQ(kestrelRender(renderer, 4, 4, nullptr, nullptr), KESTREL_ERROR_NONE);
+  }
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+}
+
 TEST_F(Api, ScenesMayBeEditedWhileTheyAreRendered) {
   set_glowing_square();
   std::atomic<bool> done = false;
