@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects, instances and their geometry."""
 
+import ctypes
+import unittest.mock
+
 import bpy
 import numpy as np
 from kestrel import session
+from kestrel.sync import object as sync_object
 from mathutils import Matrix
 from support import SceneTest, diffuse, emission, new_material, turned
 
@@ -61,6 +65,27 @@ class UnitTest(SceneTest):
         ratio = units["B"]["R"] / units["A"]["R"] if "R" in units["A"] else (
             units["B"]["relevance"] / units["A"]["relevance"])
         self.assertAlmostEqual(ratio, 1.0, 2)
+
+    def test_lone_instance_that_comes_first(self):
+        """Blender frees such an instance as soon as it hands it out."""
+        collection = self.collection_of_cubes(1)
+        collection.objects[0].data.materials.append(diffuse("Glow", (1, 1, 1)))
+        self.instancer("AnEmpty", collection, 0.5).show_instancer_for_render = False
+        self.camera((0, 0, 6))
+        self.light("SUN", np.pi)
+        original = sync_object.sync_mesh
+
+        def overwrite_what_is_free(*arguments):
+            libc = ctypes.CDLL(None)
+            libc.malloc.restype = ctypes.c_void_p
+            for size in range(16, 1024, 8):
+                for block in [libc.malloc(size) for _ in range(40)]:
+                    ctypes.memset(block, 0xff, size)
+                    libc.free(ctypes.c_void_p(block))
+            return original(*arguments)
+        with unittest.mock.patch.object(sync_object, "sync_mesh", overwrite_what_is_free):
+            self.assertEqual(set(self.units()), {"AnEmpty"})
+            self.assert_color(self.render()[16, 16], 1.0)
 
     def test_vertex_instances(self):
         self.camera((0, 0, 8))

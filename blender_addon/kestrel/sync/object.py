@@ -44,19 +44,22 @@ class Objects:
         return key
 
     def add(self, instance):
-        obj = instance.object
+        # First of all what comes from the instance itself: when the first item of the iteration is
+        # an instance, Blender has freed its memory by now, and what follows allocates.
+        matrix = instance.matrix_world.copy()
+        path = struct.pack("8i", *instance.persistent_id) if instance.is_instance else b""
         if not instance.show_self:
             return
+        obj = instance.object
         original = obj.original
         key, owner = self.key_of(original), obj
-        if instance.is_instance:
+        if path:
             owner = instance.parent
-            key = b"%b/%b/%b" % (self.key_of(owner.original), key,
-                                 struct.pack("8i", *instance.persistent_id))
+            key = b"%b/%b/%b" % (self.key_of(owner.original), key, path)
         if obj.type == "LIGHT":
-            sync_light(self.export, key, obj.data, instance.matrix_world)
+            sync_light(self.export, key, obj.data, matrix)
         elif obj.type in GEOMETRY:
-            self.add_geometry(obj, original, owner, key, instance.matrix_world)
+            self.add_geometry(obj, original, owner, key, matrix)
         elif obj.type in UNSUPPORTED:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
