@@ -38,9 +38,13 @@ void set_sink(Sink sink) {
   state().sink = std::move(sink);
 }
 
-void set_level(Level level) { state().level = level; }
+void set_level(Level level) {
+  state().level = level;
+}
 
-bool enabled(Level level) { return level >= state().level.load(std::memory_order_relaxed); }
+bool enabled(Level level) {
+  return level >= state().level.load(std::memory_order_relaxed);
+}
 
 void write(Level level, std::string_view text) {
   if (!enabled(level)) return;

@@ -18,7 +18,8 @@ using Sink = std::function<void(Level, std::string_view)>;
 /// Replaces where messages go; an empty sink restores standard error. Thread-safe.
 void set_sink(Sink sink);
 
-/// Messages below this are dropped. Starts from KESTREL_LOG=debug|info|warning|error (else warning).
+/// Messages below this are dropped. Starts from KESTREL_LOG=debug|info|warning|error (else
+/// warning).
 void set_level(Level level);
 bool enabled(Level level);
 

@@ -19,9 +19,13 @@ using glm::vec4;
 inline constexpr float kPi = 3.14159265358979323846f;
 
 /// Relative luminance of a linear Rec. 709 colour.
-inline float luminance(const vec3& rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
+inline float luminance(const vec3& rgb) {
+  return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
-inline float max_component(const vec3& v) { return glm::max(v.x, glm::max(v.y, v.z)); }
+inline float max_component(const vec3& v) {
+  return glm::max(v.x, glm::max(v.y, v.z));
+}
 
 inline bool is_finite(const vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

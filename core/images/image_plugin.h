@@ -41,8 +41,8 @@ struct KestrelImagePlugin {
   void (*free_image)(struct KestrelPluginImage* image);
 
   /// .exr: all layers in one part, channels NAME.LETTER (Combined as plain R, G, B, A), half float
-  /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits,
-  /// straight alpha. No metadata of the machine. The file appears whole or not at all.
+  /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits, straight
+  /// alpha. No metadata of the machine. The file appears whole or not at all.
   const char* (*write_file)(const char* path, int width, int height,
                             const struct KestrelPluginLayer* layers, size_t layer_count);
 };

@@ -34,11 +34,11 @@ struct Texture {
   std::string name;
   int width = 0;
   int height = 0;
-  bool srgb = false;  // 8-bit RGB is sRGB-encoded and decoded before filtering; alpha is linear
-  bool nearest = false;                // no interpolation
+  bool srgb = false;     // 8-bit RGB is sRGB-encoded and decoded before filtering; alpha is linear
+  bool nearest = false;  // no interpolation
   Extension extension = Extension::repeat;
-  std::vector<uint8_t> texels8;        // RGBA, straight alpha
-  std::vector<float> texels_float;     // RGBA, linear
+  std::vector<uint8_t> texels8;     // RGBA, straight alpha
+  std::vector<float> texels_float;  // RGBA, linear
 };
 
 enum class AlphaMode : uint8_t {
@@ -52,19 +52,19 @@ struct Material {
   std::string name;
   vec3 emission{0.0f};
   vec3 ambient{0.0f};
-  vec4 diffuse{0.8f, 0.8f, 0.8f, 1.0f};    // A: alpha (coverage)
-  vec4 specular{0.0f, 0.0f, 0.0f, 0.0f};   // A: 0 = exponent 1, 1 = exponent 255, linear between
-  vec3 optical{0.0f, 1.0f, 1.0f};          // R reflectivity, G index of refraction, B opacity
-  vec3 reflection_color{1.0f};             // tints what is reflected
-  vec3 transmission_color{1.0f};           // tints what shines through
+  vec4 diffuse{0.8f, 0.8f, 0.8f, 1.0f};   // A: alpha (coverage)
+  vec4 specular{0.0f, 0.0f, 0.0f, 0.0f};  // A: 0 = exponent 1, 1 = exponent 255, linear between
+  vec3 optical{0.0f, 1.0f, 1.0f};         // R reflectivity, G index of refraction, B opacity
+  vec3 reflection_color{1.0f};            // tints what is reflected
+  vec3 transmission_color{1.0f};          // tints what shines through
   int emission_texture = kNone;
   int ambient_texture = kNone;
   int diffuse_texture = kNone;
   int specular_texture = kNone;
-  int normal_texture = kNone;              // tangent space, +Y up (OpenGL convention)
+  int normal_texture = kNone;  // tangent space, +Y up (OpenGL convention)
   int optical_texture = kNone;
   float normal_strength = 1.0f;
-  vec2 tiling{1.0f};                       // uv' = offset + uv * tiling (listing 2)
+  vec2 tiling{1.0f};  // uv' = offset + uv * tiling (listing 2)
   vec2 offset{0.0f};
   bool casts_shadow = true;
   AlphaMode alpha_mode = AlphaMode::opaque;
@@ -87,10 +87,10 @@ struct Light {
   vec3 color{1.0f};  // radiance that a white Lambert surface facing the light reflects, at 1 m
                      // for point and spot, anywhere for directional
   vec3 position{0.0f};
-  vec3 direction{0.0f, 0.0f, -1.0f};  // unit, the way the light travels
+  vec3 direction{0.0f, 0.0f, -1.0f};   // unit, the way the light travels
   vec3 attenuation{0.0f, 0.0f, 1.0f};  // 1 / (x + y d + z d²), d in metres
-  float cos_outer = 0.0f;             // spot: cosine of half the cone's angle
-  float blend = 0.0f;                 // spot: 0 hard edge … 1 soft all the way
+  float cos_outer = 0.0f;              // spot: cosine of half the cone's angle
+  float blend = 0.0f;                  // spot: 0 hard edge … 1 soft all the way
   float specular_factor = 1.0f;
   bool casts_shadow = true;
 };
@@ -132,7 +132,7 @@ enum class WorldKind : uint8_t { color, equirectangular, cube };
 /// The formulas are in world.h.
 struct World {
   WorldKind kind = WorldKind::color;
-  vec3 color{0.0f};      // radiance, or factor on the textures
+  vec3 color{0.0f};  // radiance, or factor on the textures
   int textures[6] = {kNone, kNone, kNone, kNone, kNone, kNone};  // cube: +X -X +Y -Y +Z -Z
   mat3 map_from_world{1.0f};
 };
