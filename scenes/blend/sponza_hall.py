@@ -112,7 +112,8 @@ def drape(index):
 
 def add_hall_lights():
     """Late morning sun through the open roof, four lamps under the galleries and two spots."""
-    common.set_world((0.46, 0.55, 0.72), 1.6)
+    # Faint, because ambient light reaches every corner in Kestrel: nothing occludes it.
+    common.set_world((0.46, 0.55, 0.72), 0.3)
     common.add_sun("Sun", (-0.32, 0.10, -1.0), 6.0, (1.0, 0.93, 0.82))
     warm = (1.0, 0.72, 0.45)
     for index, x in enumerate((8.0, 0.5, -7.0, -14.5)):
