@@ -3,8 +3,10 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -21,8 +23,16 @@
 namespace kestrel {
 namespace {
 
-/// A probe of the cost traces every n-th pixel in x and y.
-constexpr int kProbeStride = 16;
+/// A frame that needs no budget is made in bands of about this many pixels: they stay in the
+/// processor's cache, and no plane of the whole picture is needed but the passes.
+constexpr int kBandPixels = 1 << 17;
+constexpr int kBandRows = 32;  // bands have a multiple of this many rows, so that tiles are whole
+
+/// How often progress is reported.
+constexpr auto kReportInterval = std::chrono::milliseconds(50);
+
+/// A probe of the cost traces about this many pixels, spread evenly.
+constexpr double kProbePixels = 4096.0;
 
 /// Adds the wall time of its life to `sum`, milliseconds.
 class Stopwatch {
@@ -43,15 +53,19 @@ class Stopwatch {
 }  // namespace
 
 struct Renderer::Impl {
-  explicit Impl(std::shared_ptr<Device> d) : device(std::move(d)) {}
+  explicit Impl(std::shared_ptr<Device> d) : device(std::move(d)) {
+    for (const PassInfo& pass : pass_table()) passes.emplace_back(pass.name);
+  }
 
   void render(const Progress& progress);
   void prepare();
   bool use_raster();
+  bool limited() const;
+  int band_rows() const;
   void rasterize(const FrameInputs& inputs);
-  void select(const FrameInputs& inputs);
+  void select(const FrameInputs& inputs, int sample);
   void probe(const FrameInputs& inputs);
-  void trace(const FrameInputs& inputs, int sample, const Progress& progress);
+  void trace(const FrameInputs& inputs, const Progress& progress);
   void blend(const FrameInputs& inputs);
   void finish();
 
@@ -63,6 +77,7 @@ struct Renderer::Impl {
   HeuristicStage heuristic;
   TraceStage trace_stage{embree_tracer};
   BlendStage blend_stage;
+  std::vector<std::string> passes;
   std::atomic<bool> cancel_requested = false;
 
   // The frame under way.
@@ -71,8 +86,13 @@ struct Renderer::Impl {
   int height = 0;
   GBuffer gbuffer;
   EffectBuffers effects;
-  EffectBuffers totals;  // rays and times of all samples so far
-  std::vector<vec4> combined;
+  Plane<vec4> combined;
+  Areas areas;
+  Selection selection;
+  EffectBuffers totals;        // rays and times so far
+  double progress_done = 0.0;  // bands done, over all bands of all samples
+  double progress_step = 1.0;
+  std::atomic<std::chrono::steady_clock::rep> last_report = 0;
   Film film;
   FrameStats stats;
 
@@ -112,26 +132,55 @@ void Renderer::render_frame(std::shared_ptr<const Scene> scene, int width, int h
   arena.execute([&] { r.render(progress); });
 }
 
-/// The four stages, once for each sample; who is selected is decided once a frame.
+void Renderer::set_passes(const std::vector<std::string>& names) {
+  Film(0, 0, names);  // checks them
+  impl_->passes = names;
+}
+
+/// The four stages, for each sample and each band of rows.
 void Renderer::Impl::render(const Progress& progress) {
   stats = {};
   totals = {};
-  film.clear();
+  areas.clear();
+  last_report = 0;
+  film = Film(width, height, passes);
   {
     const Stopwatch watch(stats.frame_ms);
     prepare();
-    for (int sample = 0; sample < scene->settings.samples; ++sample) {
-      const FrameInputs inputs{
-          *scene, width, height, subpixel_offset(scene->settings, sample),
-          scene->settings.budget_ms / static_cast<float>(scene->settings.samples)};
-      rasterize(inputs);
-      if (sample == 0) select(inputs);
-      trace(inputs, sample, progress);
-      blend(inputs);
-      film.add_sample(inputs, gbuffer, effects, combined);
+    const Settings& settings = scene->settings;
+    const int rows = band_rows();
+    progress_done = 0.0;
+    progress_step = 1.0 / (settings.samples * ((height + rows - 1) / rows));
+    for (int sample = 0; sample < settings.samples; ++sample) {
+      for (int first_row = 0; first_row < height; first_row += rows) {
+        const FrameInputs inputs{*scene,
+                                 width,
+                                 height,
+                                 subpixel_offset(settings, sample),
+                                 settings.budget_ms / static_cast<float>(settings.samples),
+                                 first_row,
+                                 std::min(rows, height - first_row)};
+        rasterize(inputs);
+        select(inputs, sample);
+        trace(inputs, progress);
+        blend(inputs);
+        film.add(inputs, sample, gbuffer, effects, combined);
+      }
     }
   }
   finish();
+}
+
+/// Whether the graph decides; else every visible object is traced, or none.
+bool Renderer::Impl::limited() const {
+  return scene->settings.selection == SelectionPolicy::graph && scene->settings.budget_ms > 0.0f;
+}
+
+/// The graph needs to see the whole picture, and so does the rasteriser.
+int Renderer::Impl::band_rows() const {
+  if (limited() || raster) return height;
+  const int rows = (kBandPixels / width + kBandRows - 1) / kBandRows * kBandRows;
+  return std::clamp(rows, kBandRows, std::max(height, kBandRows));
 }
 
 /// Brings what the stages read up to date with the scene.
@@ -170,41 +219,58 @@ void Renderer::Impl::rasterize(const FrameInputs& inputs) {
   }
 }
 
-void Renderer::Impl::select(const FrameInputs& inputs) {
+/// Decides who is traced: with a budget on the first sample's whole picture, else before anything
+/// is seen, as if every object were visible.
+void Renderer::Impl::select(const FrameInputs& inputs, int sample) {
   const Stopwatch watch(stats.stages.heuristic);
-  stats.selection = heuristic.run(inputs, gbuffer);
-  if (inputs.budget_ms > 0.0f && !heuristic.calibrated()) {
-    probe(inputs);
-    stats.selection = heuristic.run(inputs, gbuffer);
+  if (sample == 0) count_areas(*scene, gbuffer, areas);
+  const bool first = sample == 0 && inputs.first_row == 0;
+  if (first && limited()) {
+    selection = heuristic.select(inputs, areas);
+    if (!heuristic.calibrated()) {
+      probe(inputs);
+      selection = heuristic.select(inputs, areas);
+    }
+  } else if (first) {
+    selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
   }
-  if (scene->settings.validate_areas && raster) {
+  if (sample == 0) write_heuristic_mask(*scene, selection, gbuffer);
+  if (first && scene->settings.validate_areas && raster) {
     stats.occlusion_areas = raster->occlusion_areas(inputs);
   }
 }
 
 /// Measures what tracing costs here, on few pixels of everything in view.
 void Renderer::Impl::probe(const FrameInputs& inputs) {
+  const double pixels = static_cast<double>(inputs.pixels());
+  const int stride = std::max(1, static_cast<int>(std::sqrt(pixels / kProbePixels)));
   double ms = 0.0;
   {
     const Stopwatch watch(ms);
-    trace_stage.run({inputs, gbuffer, stats.selection, kProbeStride, {}, {}}, effects);
+    trace_stage.run({inputs, gbuffer, selection, stride, {}, {}}, effects);
   }
-  heuristic.learn(inputs, stats.selection, effects, ms,
-                  1.0 / static_cast<double>(kProbeStride * kProbeStride));
+  heuristic.learn(inputs, selection, effects, ms, 1.0 / (stride * stride));
 }
 
-void Renderer::Impl::trace(const FrameInputs& inputs, int sample, const Progress& progress) {
+void Renderer::Impl::trace(const FrameInputs& inputs, const Progress& progress) {
   const Stopwatch watch(stats.stages.trace);
   const auto report = [&](float share) {
-    if (!progress) return;
-    const float samples = static_cast<float>(scene->settings.samples);
-    const auto status = fmt::format("Sample {}/{}", sample + 1, scene->settings.samples);
-    if (!progress((static_cast<float>(sample) + share) / samples, status)) cancel_requested = true;
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    auto last = last_report.load();
+    if (!progress || now - decltype(now)(last) < kReportInterval ||
+        !last_report.compare_exchange_strong(last, now.count())) {
+      return;
+    }
+    const double done = progress_done + share * progress_step;
+    const int sample = std::min(static_cast<int>(done * stats.samples) + 1, stats.samples);
+    if (!progress(static_cast<float>(done), fmt::format("Sample {}/{}", sample, stats.samples))) {
+      cancel_requested = true;
+    }
   };
   report(0.0f);
-  const TraceRequest request{
-      inputs, gbuffer, stats.selection, 1, [this] { return cancel_requested.load(); }, report};
-  trace_stage.run(request, effects);
+  trace_stage.run(
+      {inputs, gbuffer, selection, 1, [this] { return cancel_requested.load(); }, report}, effects);
+  progress_done += progress_step;
   totals.rays += effects.rays;
   totals.trace_calls_ms += effects.trace_calls_ms;
   totals.rays_by_unit.resize(effects.rays_by_unit.size(), 0);
@@ -215,16 +281,18 @@ void Renderer::Impl::trace(const FrameInputs& inputs, int sample, const Progress
 
 void Renderer::Impl::blend(const FrameInputs& inputs) {
   const Stopwatch watch(stats.stages.blend);
-  blend_stage.run(inputs, gbuffer, stats.selection, effects, combined);
+  blend_stage.run(inputs, gbuffer, selection, effects, combined);
 }
 
 /// Publishes the frame, and lets the heuristic learn from it.
 void Renderer::Impl::finish() {
   const FrameInputs inputs{*scene, width, height};
+  stats.selection = limited() ? selection : heuristic.select(inputs, areas);
+  heuristic.remember(stats.selection);
   heuristic.learn(inputs, stats.selection, totals, stats.stages.trace, stats.samples);
   stats.rays += totals.rays;
   stats.trace_calls_ms = totals.trace_calls_ms;
-  std::swap(finished, film);
+  finished = std::move(film);
   stats_json = to_json(stats, *scene);
   log::info(
       "{}x{}, {} samples, primary {}: {:.1f} ms (update {:.1f}, raster {:.1f}, heuristic "

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "frame/film.h"
 #include "frame/frame.h"
@@ -43,6 +44,9 @@ class Renderer {
   /// called; the last whole frame then stays readable.
   void render_frame(std::shared_ptr<const Scene> scene, int width, int height,
                     const Progress& progress);
+
+  /// Passes that the next frames keep, by name; at first all. Throws Error(invalid_argument).
+  void set_passes(const std::vector<std::string>& names);
 
   /// From any thread; only affects a frame under way.
   void cancel();

@@ -73,6 +73,8 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
         if self._session is None:
             return
         with self._reporting():
+            self._session.renderer.set_passes(
+                item.name for item in passes.enabled(depsgraph.view_layer))
             self._render_frame()
             if not self.test_break():
                 self._write_result(depsgraph.view_layer)

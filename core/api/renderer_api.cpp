@@ -193,6 +193,19 @@ const char* kestrelGetPassChannels(KestrelRenderer renderer, const char* name) {
   });
 }
 
+KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* passes) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    std::vector<std::string> names;
+    for (const PassInfo* pass : parse_passes(require(passes, "passes"))) {
+      names.emplace_back(pass->name);
+    }
+    const std::lock_guard lock(state->mutex);
+    if (state->rendering) refuse_while_rendering();
+    state->renderer.set_passes(names);
+  });
+}
+
 KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* pixels,
                              size_t float_count) {
   return guarded([&] {
@@ -209,8 +222,7 @@ KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* 
            "Pass '{}' has {} x {} pixels with {} channels: {} floats, not {}.", name, film.width(),
            film.height(), channels, expected, float_count);
     }
-    const std::vector<float> values = film.pass(pass.name);
-    std::copy(values.begin(), values.end(), pixels);
+    film.read(pass.name, pixels);
   });
 }
 

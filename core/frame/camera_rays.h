@@ -26,9 +26,10 @@ class CameraRays {
         scale_((camera_.right - camera_.left) / static_cast<float>(inputs.width),
                (camera_.top - camera_.bottom) / static_cast<float>(inputs.height)),
         first_(camera_.left + (0.5f + inputs.subpixel.x) * scale_.x,
-               camera_.bottom + (0.5f + inputs.subpixel.y) * scale_.y) {}
+               camera_.bottom +
+                   (0.5f + static_cast<float>(inputs.first_row) + inputs.subpixel.y) * scale_.y) {}
 
-  /// The ray through the frame's sample position of pixel (x, y), row 0 at the bottom.
+  /// The ray through the frame's sample position of pixel (x, y), row 0 at the bottom of the band.
   CameraRay ray(int x, int y) const {
     const vec2 at = first_ + vec2(x, y) * scale_;
     if (camera_.projection == Projection::orthographic) {

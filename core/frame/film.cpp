@@ -3,109 +3,159 @@
 
 #include <tbb/parallel_for.h>
 
-#include <string>
+#include <cstring>
 
 #include "base/error.h"
 
 namespace kestrel {
 namespace {
 
-template <typename T>
-void add(std::vector<T>& sum, const std::vector<T>& more) {
-  constexpr size_t kChunk = 1 << 16;
-  tbb::parallel_for(size_t{0}, (sum.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
-    const size_t end = std::min(sum.size(), (chunk + 1) * kChunk);
-    for (size_t i = chunk * kChunk; i < end; ++i) sum[i] += more[i];
-  });
+/// Where samples come from.
+struct Sources {
+  const Camera& camera;
+  const GBuffer& gbuffer;
+  const EffectBuffers& effects;
+  const Plane<vec4>& combined;
+};
+
+/// Distance along the view, metres; 1e10 where there is nothing, as Cycles and EEVEE write it.
+float linear_depth(const Sources& from, size_t i) {
+  if (from.gbuffer.object[i] == 0) return 1e10f;
+  const float n = from.camera.near_clip, f = from.camera.far_clip;
+  const float reversed = from.gbuffer.depth[i];
+  return from.camera.projection == Projection::orthographic ? f - reversed * (f - n)
+                                                            : n * f / (reversed * (f - n) + n);
 }
 
-/// The same for scalars and vectors.
-template <typename T>
-std::vector<float> flatten(const std::vector<T>& plane, float scale) {
-  constexpr size_t kChannels = sizeof(T) / 4;
-  std::vector<float> out(plane.size() * kChannels);
-  for (size_t i = 0; i < plane.size(); ++i) {
-    if constexpr (kChannels == 1) {
-      out[i] = static_cast<float>(plane[i]) * scale;
-    } else {
-      for (size_t c = 0; c < kChannels; ++c) {
-        out[kChannels * i + c] = plane[i][static_cast<int>(c)] * scale;
-      }
-    }
+/// How a pass gets its values; `averaged` over the samples, or those of the first.
+struct PassRow {
+  PassInfo info;
+  bool averaged;
+  void (*get)(const Sources& from, size_t i, float* out);
+};
+
+template <auto Member>
+void from_gbuffer(const Sources& from, size_t i, float* out) {
+  const auto& value = (from.gbuffer.*Member)[i];
+  std::memcpy(out, &value, sizeof(value));
+}
+template <auto Member>
+void from_ids(const Sources& from, size_t i, float* out) {
+  *out = static_cast<float>((from.gbuffer.*Member)[i]);
+}
+template <auto Member>
+void from_effects(const Sources& from, size_t i, float* out) {
+  std::memcpy(out, &(from.effects.*Member)[i], sizeof(vec3));
+}
+
+const std::vector<PassRow>& pass_rows() {
+  using G = GBuffer;
+  using E = EffectBuffers;
+  static const std::vector<PassRow> rows = {
+      {{"Combined", "RGBA"},
+       true,
+       [](const Sources& from, size_t i, float* out) {
+         std::memcpy(out, &from.combined[i], sizeof(vec4));
+       }},
+      {{"Depth", "Z"},
+       false,
+       [](const Sources& from, size_t i, float* out) { *out = linear_depth(from, i); }},
+      {{"ReversedDepth", "Z"}, false, from_gbuffer<&G::depth>},
+      {{"Position", "XYZ"}, false, from_gbuffer<&G::position>},
+      {{"Normal", "XYZ"}, false, from_gbuffer<&G::normal>},
+      {{"Emission", "RGB"}, true, from_gbuffer<&G::emission>},
+      {{"Ambient", "RGB"}, true, from_gbuffer<&G::ambient>},
+      {{"Diffuse", "RGBA"}, true, from_gbuffer<&G::diffuse>},
+      {{"Specular", "RGBA"}, true, from_gbuffer<&G::specular>},
+      {{"Optical", "RGB"}, true, from_gbuffer<&G::optical>},
+      {{"HeuristicMask", "X"}, false, from_gbuffer<&G::heuristic_mask>},
+      {{"ObjectId", "X"}, false, from_ids<&G::object>},
+      {{"MaterialId", "X"}, false, from_ids<&G::material>},
+      {{"Lighting", "RGB"}, true, from_gbuffer<&G::lighting>},
+      {{"Shadow", "RGB"}, true, from_effects<&E::shadow>},
+      {{"Reflection", "RGB"}, true, from_effects<&E::reflection>},
+      {{"Refraction", "RGB"}, true, from_effects<&E::refraction>},
+  };
+  return rows;
+}
+
+[[noreturn]] void unknown_pass(std::string_view name) {
+  std::string known;
+  for (const PassInfo& p : pass_table()) known += std::string(known.empty() ? "" : ", ") + p.name;
+  fail(ErrorCode::invalid_argument, "There is no pass '{}'. Passes: {}.", name, known);
+}
+
+size_t find_row(std::string_view name) {
+  for (size_t i = 0; i < pass_rows().size(); ++i) {
+    if (pass_rows()[i].info.name == name) return i;
   }
-  return out;
+  unknown_pass(name);
 }
 
 }  // namespace
 
 const std::vector<PassInfo>& pass_table() {
-  static const std::vector<PassInfo> table = {
-      {"ReversedDepth", "Z"}, {"Combined", "RGBA"}, {"Depth", "Z"},         {"Position", "XYZ"},
-      {"Normal", "XYZ"},      {"Emission", "RGB"},  {"Ambient", "RGB"},     {"Diffuse", "RGBA"},
-      {"Specular", "RGBA"},   {"Optical", "RGB"},   {"HeuristicMask", "X"}, {"ObjectId", "X"},
-      {"MaterialId", "X"},    {"Lighting", "RGB"},  {"Shadow", "RGB"},      {"Reflection", "RGB"},
-      {"Refraction", "RGB"},
-  };
+  static const std::vector<PassInfo> table = [] {
+    std::vector<PassInfo> infos;
+    for (const PassRow& row : pass_rows()) infos.push_back(row.info);
+    return infos;
+  }();
   return table;
 }
 
-void Film::add_sample(const FrameInputs& inputs, GBuffer& gbuffer, EffectBuffers& effects,
-                      std::vector<vec4>& combined) {
-  if (samples_++ == 0) {
-    camera_ = inputs.scene.camera;
-    std::swap(gbuffer_, gbuffer);
-    std::swap(effects_, effects);
-    std::swap(combined_, combined);
-    return;
+Film::Film(int width, int height, const std::vector<std::string>& wanted)
+    : width_(width), height_(height) {
+  for (const std::string& name : wanted) {
+    const size_t row = find_row(name);
+    const size_t channels = std::strlen(pass_rows()[row].info.channels);
+    passes_.push_back({row, channels, {}});
+    passes_.back().sums.resize(static_cast<size_t>(width) * static_cast<size_t>(height) * channels);
   }
-  add(combined_, combined);
-  add(gbuffer_.emission, gbuffer.emission);
-  add(gbuffer_.ambient, gbuffer.ambient);
-  add(gbuffer_.diffuse, gbuffer.diffuse);
-  add(gbuffer_.specular, gbuffer.specular);
-  add(gbuffer_.optical, gbuffer.optical);
-  add(gbuffer_.lighting, gbuffer.lighting);
-  add(effects_.shadow, effects.shadow);
-  add(effects_.reflection, effects.reflection);
-  add(effects_.refraction, effects.refraction);
 }
 
-std::vector<float> Film::linear_depth() const {
-  constexpr float kNothing = 1e10f;  // as Cycles and EEVEE write it
-  const float n = camera_.near_clip, f = camera_.far_clip;
-  std::vector<float> out(gbuffer_.depth.size(), kNothing);
-  for (size_t i = 0; i < out.size(); ++i) {
-    if (gbuffer_.object[i] == 0) continue;
-    const float reversed = gbuffer_.depth[i];
-    out[i] = camera_.projection == Projection::orthographic ? f - reversed * (f - n)
-                                                            : n * f / (reversed * (f - n) + n);
+void Film::add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
+               const EffectBuffers& effects, const Plane<vec4>& combined) {
+  samples_ = sample + 1;
+  const Sources from{inputs.scene.camera, gbuffer, effects, combined};
+  const size_t width = static_cast<size_t>(width_);
+  tbb::parallel_for(0, inputs.rows, [&](int row) {
+    for (Channel& pass : passes_) {
+      const PassRow& source = pass_rows()[pass.pass];
+      if (sample > 0 && !source.averaged) continue;
+      float* out = &pass.sums[static_cast<size_t>(inputs.first_row + row) * width * pass.channels];
+      for (size_t x = 0; x < width; ++x, out += pass.channels) {
+        float value[4];
+        source.get(from, static_cast<size_t>(row) * width + x, value);
+        for (size_t c = 0; c < pass.channels; ++c) out[c] = sample ? out[c] + value[c] : value[c];
+      }
+    }
+  });
+}
+
+const Film::Channel& Film::find(std::string_view name) const {
+  const size_t row = find_row(name);
+  for (const Channel& pass : passes_) {
+    if (pass.pass == row) return pass;
   }
-  return out;
+  fail(ErrorCode::invalid_argument,
+       "The pass '{}' was not rendered. Ask for it before rendering (kestrelSetPasses).", name);
+}
+
+size_t Film::float_count(std::string_view name) const {
+  return find(name).sums.size();
+}
+
+void Film::read(std::string_view name, float* pixels) const {
+  const Channel& pass = find(name);
+  const bool averaged = pass_rows()[pass.pass].averaged && samples_ > 1;
+  const float scale = averaged ? 1.0f / static_cast<float>(samples_) : 1.0f;
+  for (size_t i = 0; i < pass.sums.size(); ++i) pixels[i] = pass.sums[i] * scale;
 }
 
 std::vector<float> Film::pass(std::string_view name) const {
-  const float average = samples_ > 0 ? 1.0f / static_cast<float>(samples_) : 0.0f;
-  const GBuffer& g = gbuffer_;
-  if (name == "Combined") return flatten(combined_, average);
-  if (name == "Depth") return linear_depth();
-  if (name == "ReversedDepth") return flatten(g.depth, 1.0f);
-  if (name == "Position") return flatten(g.position, 1.0f);
-  if (name == "Normal") return flatten(g.normal, 1.0f);
-  if (name == "Emission") return flatten(g.emission, average);
-  if (name == "Ambient") return flatten(g.ambient, average);
-  if (name == "Diffuse") return flatten(g.diffuse, average);
-  if (name == "Specular") return flatten(g.specular, average);
-  if (name == "Optical") return flatten(g.optical, average);
-  if (name == "HeuristicMask") return flatten(g.heuristic_mask, 1.0f);
-  if (name == "ObjectId") return flatten(g.object, 1.0f);
-  if (name == "MaterialId") return flatten(g.material, 1.0f);
-  if (name == "Lighting") return flatten(g.lighting, average);
-  if (name == "Shadow") return flatten(effects_.shadow, average);
-  if (name == "Reflection") return flatten(effects_.reflection, average);
-  if (name == "Refraction") return flatten(effects_.refraction, average);
-  std::string known;
-  for (const PassInfo& p : pass_table()) known += std::string(known.empty() ? "" : ", ") + p.name;
-  fail(ErrorCode::invalid_argument, "There is no pass '{}'. Passes: {}.", name, known);
+  std::vector<float> pixels(float_count(name));
+  read(name, pixels.data());
+  return pixels;
 }
 
 }  // namespace kestrel

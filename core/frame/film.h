@@ -2,6 +2,7 @@
 // The finished picture: Combined and every buffer between the stages, as passes.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,33 +19,40 @@ struct PassInfo {
 /// Every pass, in the order in which hosts list them.
 const std::vector<PassInfo>& pass_table();
 
-/// Accumulates samples. Colours are averaged over the samples; geometry, ids and the mask are
-/// those of the first sample, which lies in the pixel's centre.
+/// Accumulates samples of the passes that are wanted; the others need no memory. Colours are
+/// averaged over the samples; geometry, ids and the mask are those of the first sample, which lies
+/// in the pixel's centre.
 class Film {
  public:
-  /// Starts a new picture; the next first sample gets this one's memory in exchange.
-  void clear() { samples_ = 0; }
+  Film() = default;
+  /// Throws Error(invalid_argument) for a name that is not in the table.
+  Film(int width, int height, const std::vector<std::string>& wanted);
 
-  /// Takes the buffers over: the first sample's are kept, later ones are added and left as they
-  /// are. All samples have one size.
-  void add_sample(const FrameInputs& inputs, GBuffer& gbuffer, EffectBuffers& effects,
-                  std::vector<vec4>& combined);
+  /// Adds the band of `inputs` of sample `sample`; sample 0 comes first.
+  void add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
+           const EffectBuffers& effects, const Plane<vec4>& combined);
 
-  int width() const { return gbuffer_.width; }
-  int height() const { return gbuffer_.height; }
-  int samples() const { return samples_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
 
-  /// Channels interleaved. Throws Error(invalid_argument) for an unknown name.
+  /// Number of floats of a pass. Throws Error(invalid_argument) where it is unknown or not wanted.
+  size_t float_count(std::string_view name) const;
+  /// Copies a pass, channels interleaved; `pixels` holds float_count() floats.
+  void read(std::string_view name, float* pixels) const;
   std::vector<float> pass(std::string_view name) const;
 
  private:
-  std::vector<float> linear_depth() const;
+  struct Channel {
+    size_t pass;  // index in pass_table()
+    size_t channels;
+    Plane<float> sums;
+  };
+  const Channel& find(std::string_view name) const;
 
+  int width_ = 0;
+  int height_ = 0;
   int samples_ = 0;
-  Camera camera_;
-  GBuffer gbuffer_;             // colours: sums over the samples
-  EffectBuffers effects_;       // sums
-  std::vector<vec4> combined_;  // sums
+  std::vector<Channel> passes_;
 };
 
 }  // namespace kestrel

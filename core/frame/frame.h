@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/math.h"
@@ -11,35 +13,59 @@
 
 namespace kestrel {
 
-/// What every stage needs to know of this frame.
+/// What every stage needs to know of this frame. Stages work on the whole picture or, to need less
+/// memory, on a band of its rows.
 struct FrameInputs {
   const Scene& scene;
-  int width;               // pixels
-  int height;              // pixels
+  int width;               // of the picture, pixels
+  int height;              // of the picture, pixels
   vec2 subpixel{0.0f};     // sample position, offset from the pixel's centre, in pixels
   float budget_ms = 0.0f;  // T for this sample: the frame's share; 0 means no limit
+  int first_row = 0;       // of the band
+  int rows = height;       // of the band
 
-  size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+  /// Of the band.
+  size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(rows); }
 };
+
+/// Planes are written whole by whoever fills them, in parallel: new memory is left uninitialised,
+/// so that it is touched once.
+template <typename T>
+struct UninitializedAllocator : std::allocator<T> {
+  template <typename U>
+  struct rebind {
+    using other = UninitializedAllocator<U>;
+  };
+  template <typename U>
+  void construct(U* p) noexcept {
+    ::new (static_cast<void*>(p)) U;
+  }
+  template <typename U, typename... Args>
+  void construct(U* p, Args&&... args) {
+    ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
+};
+template <typename T>
+using Plane = std::vector<T, UninitializedAllocator<T>>;
 
 /// Stage 1's output (paper, Table 2), filled by the rasteriser or by primary rays.
 /// Where `object == 0` nothing was hit: lighting holds the world, the other planes zero.
 struct GBuffer {
   int width = 0;
-  int height = 0;
-  std::vector<vec3> position;  // world space
-  std::vector<vec3> normal;    // world space, unit, after normal maps, on the mesh's own side
-  std::vector<vec3> normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
-  std::vector<vec3> emission;
-  std::vector<vec3> ambient;   // material ambient, without the global ambient light
-  std::vector<vec4> diffuse;   // A: alpha after the material's alpha mode (1 where opaque)
-  std::vector<vec4> specular;  // A: exponent, 0 … 1 for 1 … 255
-  std::vector<vec3> optical;   // R reflectivity, G index of refraction, B opacity incl. alpha
-  std::vector<float> heuristic_mask;  // stage 2: 1 selected, 0 not
-  std::vector<float> depth;        // reversed z: 1 at the near plane, 0 at the far one and beyond
-  std::vector<uint32_t> object;    // scene object index + 1, 0 = nothing
-  std::vector<uint32_t> material;  // scene material index (0 also where nothing)
-  std::vector<vec3> lighting;      // P-buffer: L, lit without shadows, reflections, refractions
+  int height = 0;                // of the picture or the band
+  Plane<vec3> position;          // world space
+  Plane<vec3> normal;            // world space, unit, after normal maps, on the mesh's own side
+  Plane<vec3> normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
+  Plane<vec3> emission;
+  Plane<vec3> ambient;          // material ambient, without the global ambient light
+  Plane<vec4> diffuse;          // A: alpha after the material's alpha mode (1 where opaque)
+  Plane<vec4> specular;         // A: exponent, 0 … 1 for 1 … 255
+  Plane<vec3> optical;          // R reflectivity, G index of refraction, B opacity incl. alpha
+  Plane<float> heuristic_mask;  // stage 2: 1 selected, 0 not
+  Plane<float> depth;           // reversed z: 1 at the near plane, 0 at the far one and beyond
+  Plane<uint32_t> object;       // scene object index + 1, 0 = nothing
+  Plane<uint32_t> material;     // scene material index (0 also where nothing)
+  Plane<vec3> lighting;         // P-buffer: L, lit without shadows, reflections, refractions
 
   void resize(int new_width, int new_height);
 };
@@ -87,9 +113,9 @@ struct RayCounts {
 
 /// Stage 3's output. Where nothing is traced: shadow 1, the others 0.
 struct EffectBuffers {
-  std::vector<vec3> shadow;      // S = 1 - Σ blocked light, unclamped
-  std::vector<vec3> reflection;  // M, already tinted by the material's reflection colour
-  std::vector<vec3> refraction;  // R, already tinted by the material's transmission colour
+  Plane<vec3> shadow;      // S = 1 - Σ blocked light, unclamped
+  Plane<vec3> reflection;  // M, already tinted by the material's reflection colour
+  Plane<vec3> refraction;  // R, already tinted by the material's transmission colour
   RayCounts rays;
   double trace_calls_ms = 0.0;         // thread time inside Embree calls
   std::vector<uint64_t> rays_by_unit;  // parallel to Scene::units

@@ -13,10 +13,10 @@ vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflectio
 }
 
 void BlendStage::run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
-                     const EffectBuffers& effects, std::vector<vec4>& combined) {
+                     const EffectBuffers& effects, Plane<vec4>& combined) {
   combined.resize(inputs.pixels());
   const size_t width = static_cast<size_t>(inputs.width);
-  tbb::parallel_for(0, inputs.height, [&](int y) {
+  tbb::parallel_for(0, inputs.rows, [&](int y) {
     for (size_t i = y * width; i < (y + 1) * width; ++i) {
       const uint32_t object = gbuffer.object[i];
       const uint8_t traced =

@@ -33,7 +33,7 @@ class BlendStage {
   /// Combined: linear RGB and alpha 1. Effects that were not traced leave the lighting as it is:
   /// an untraced reflection or refraction counts as lighting in its place.
   void run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
-           const EffectBuffers& effects, std::vector<vec4>& combined);
+           const EffectBuffers& effects, Plane<vec4>& combined);
 };
 
 }  // namespace kestrel

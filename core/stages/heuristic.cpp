@@ -66,34 +66,11 @@ WantedEffects wanted_effects(const Unit& unit, size_t lights) {
 
 // ---- Factors: A, P, D ------------------------------------------------------------------------
 
-/// Pixels by G-buffer object id, 0 (nothing) included. The same whatever the number of threads.
-std::vector<uint64_t> count_pixels(const std::vector<uint32_t>& ids, size_t id_count) {
-  tbb::enumerable_thread_specific<std::vector<uint32_t>> partial(
-      [id_count] { return std::vector<uint32_t>(id_count, 0); });
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, ids.size(), kPixelsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      std::vector<uint32_t>& counts = partial.local();
-                      for (size_t i = range.begin(); i < range.end();) {
-                        const uint32_t id = ids[i];
-                        const size_t first = i;
-                        while (i < range.end() && ids[i] == id) ++i;
-                        assert(id < id_count);
-                        counts[id] += static_cast<uint32_t>(i - first);
-                      }
-                    });
-  std::vector<uint64_t> total(id_count, 0);
-  for (const auto& counts : partial) {
-    for (size_t id = 0; id < id_count; ++id) total[id] += counts[id];
-  }
-  return total;
-}
-
 /// Fills A.
-void measure_areas(const Scene& scene, const GBuffer& gbuffer, Selection& selection) {
-  const std::vector<uint64_t> pixels = count_pixels(gbuffer.object, scene.objects.size() + 1);
+void measure_areas(const Scene& scene, const Areas& areas, Selection& selection) {
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const int unit = scene.objects[i].unit;
-    if (unit != kNone) selection.units[unit].area += pixels[i + 1];
+    if (unit != kNone) selection.units[unit].area += areas[i + 1];
   }
 }
 
@@ -153,8 +130,33 @@ Candidates grant_always(const Scene& scene, double ms_per_ray, Selection& select
   return candidates;
 }
 
-/// 1 on the pixels of units of which some effect is traced, 0 elsewhere.
-void write_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer) {
+}  // namespace
+
+// ---- The stage -------------------------------------------------------------------------------
+
+void count_areas(const Scene& scene, const GBuffer& gbuffer, Areas& areas) {
+  const auto& ids = gbuffer.object;
+  const size_t id_count = scene.objects.size() + 1;
+  areas.resize(id_count, 0);
+  tbb::enumerable_thread_specific<std::vector<uint32_t>> partial(
+      [id_count] { return std::vector<uint32_t>(id_count, 0); });
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, ids.size(), kPixelsPerTask),
+                    [&](const tbb::blocked_range<size_t>& range) {
+                      std::vector<uint32_t>& counts = partial.local();
+                      for (size_t i = range.begin(); i < range.end();) {
+                        const uint32_t id = ids[i];
+                        const size_t first = i;
+                        while (i < range.end() && ids[i] == id) ++i;
+                        assert(id < id_count);
+                        counts[id] += static_cast<uint32_t>(i - first);
+                      }
+                    });
+  for (const auto& counts : partial) {
+    for (size_t id = 0; id < id_count; ++id) areas[id] += counts[id];
+  }
+}
+
+void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer) {
   std::vector<float> mask_of_id(scene.objects.size() + 1, 0.0f);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const int unit = scene.objects[i].unit;
@@ -169,11 +171,7 @@ void write_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer
                     });
 }
 
-}  // namespace
-
-// ---- The stage -------------------------------------------------------------------------------
-
-Selection HeuristicStage::run(const FrameInputs& inputs, GBuffer& gbuffer) {
+Selection HeuristicStage::select(const FrameInputs& inputs, const Areas& areas) {
   match_units(inputs.scene.units);
   if (starved_frames_ >= kMaxStarvedFrames) {
     ray_cost_.forget();
@@ -181,11 +179,21 @@ Selection HeuristicStage::run(const FrameInputs& inputs, GBuffer& gbuffer) {
   }
   Selection selection;
   selection.units.resize(inputs.scene.units.size());
-  measure_areas(inputs.scene, gbuffer, selection);
+  measure_areas(inputs.scene, areas, selection);
   estimate(inputs, selection);
   choose(inputs, selection);
-  write_mask(inputs.scene, selection, gbuffer);
   return selection;
+}
+
+void HeuristicStage::remember(const Selection& selection) {
+  bool left_out = false, traced = false;
+  for (size_t i = 0; i < memory_.size(); ++i) {
+    const UnitSelection& u = selection.units[i];
+    memory_[i].was_selected = u.selected;
+    traced |= u.effects != 0;
+    left_out |= u.area > 0 && !u.selected;
+  }
+  starved_frames_ = left_out && !traced ? starved_frames_ + 1 : 0;
 }
 
 void HeuristicStage::match_units(const std::vector<Unit>& units) {
@@ -230,8 +238,8 @@ void HeuristicStage::estimate(const FrameInputs& inputs, Selection& selection) c
   }
 }
 
-/// Fills `selected` and `effects`, and remembers S.
-void HeuristicStage::choose(const FrameInputs& inputs, Selection& selection) {
+/// Fills `selected` and `effects`.
+void HeuristicStage::choose(const FrameInputs& inputs, Selection& selection) const {
   const SelectionPolicy policy = inputs.scene.settings.selection;
   const bool limited = policy == SelectionPolicy::graph && inputs.budget_ms > 0.0f;
   Candidates candidates = grant_always(inputs.scene, ray_cost_.ms_per_ray(), selection);
@@ -241,21 +249,12 @@ void HeuristicStage::choose(const FrameInputs& inputs, Selection& selection) {
                             ? inputs.budget_ms / ray_cost_.headroom() - candidates.cost_of_always
                             : std::numeric_limits<double>::infinity();
   const std::vector<bool> chosen = select_nodes(candidates.nodes, budget);
-  bool any_chosen = false;
   for (size_t n = 0; n < chosen.size(); ++n) {
     if (!chosen[n]) continue;
     UnitSelection& u = selection.units[candidates.units[n]];
     u.selected = true;
     u.effects |= candidates.effects[n];
-    any_chosen = true;
   }
-  if (limited && !calibrated()) return;  // for a probe; not what this frame selects
-
-  for (size_t i = 0; i < memory_.size(); ++i) {
-    memory_[i].was_selected = selection.units[i].selected;
-  }
-  const bool starved = !chosen.empty() && !any_chosen && candidates.cost_of_always == 0.0;
-  starved_frames_ = starved ? starved_frames_ + 1 : 0;
 }
 
 // ---- Learning --------------------------------------------------------------------------------

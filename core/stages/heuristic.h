@@ -12,23 +12,34 @@
 
 namespace kestrel {
 
+/// Visible pixels by G-buffer object id, nothing (0) included.
+using Areas = std::vector<uint64_t>;
+
+/// Adds a histogram of the G-buffer's object ids. The same whatever the number of threads.
+void count_areas(const Scene& scene, const GBuffer& gbuffer, Areas& areas);
+
+/// 1 on the pixels of units of which some effect is traced, 0 elsewhere.
+void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer);
+
 class HeuristicStage {
  public:
-  /// Chooses units from what the G-buffer shows, and writes its heuristic mask; once a frame, as
-  /// what it selects is the next run's S. `Settings::selection` may bypass the graph (all, none);
-  /// EffectMode overrides are honoured: `always` effects are traced whatever the budget and their
-  /// cost is taken off it first, `never` ones are neither traced nor counted in Q.
+  /// Chooses units by their visible pixels (A). `Settings::selection` may bypass the graph (all,
+  /// none); EffectMode overrides are honoured: `always` effects are traced whatever the budget and
+  /// their cost is taken off it first, `never` ones are neither traced nor counted in Q.
   /// `selected` says whether the effects that a unit leaves to the heuristic are traced; of a unit
   /// that leaves it none, whether there are any.
   /// A budget needs costs: while they are unknown, all visible units are selected, for the probe
-  /// to measure, and this does not count as S.
-  Selection run(const FrameInputs& inputs, GBuffer& gbuffer);
+  /// to measure.
+  Selection select(const FrameInputs& inputs, const Areas& areas);
+
+  /// Makes a frame's selection the next one's S. Once a frame.
+  void remember(const Selection& selection);
 
   /// Learns from a traced frame: milliseconds per ray (T is in milliseconds) and, where a unit's
   /// cost setting is 0, its own E from the rays it really needed; afterwards Σ C over what was
   /// traced is its time, smoothed. Fills `ms` and `traced_rays` of each unit. `selection` is that
-  /// of the last run(); `trace_ms` is stage 3's wall time; `coverage` is how often it traced each
-  /// selected pixel: the number of samples, or the share of pixels that a probe took.
+  /// of the last select(); `trace_ms` is stage 3's wall time; `coverage` is how often it traced
+  /// each selected pixel: the number of samples, or the share of pixels that a probe took.
   void learn(const FrameInputs& inputs, Selection& selection, const EffectBuffers& effects,
              double trace_ms, double coverage = 1.0);
 
@@ -50,7 +61,7 @@ class HeuristicStage {
 
   void match_units(const std::vector<Unit>& units);
   void estimate(const FrameInputs& inputs, Selection& selection) const;
-  void choose(const FrameInputs& inputs, Selection& selection);
+  void choose(const FrameInputs& inputs, Selection& selection) const;
   double learn_unit_costs(const Scene& scene, const Selection& selection, double coverage);
 
   RayCost ray_cost_;

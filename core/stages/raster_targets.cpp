@@ -36,7 +36,7 @@ void for_each_pixel(size_t count, const Function& function) {
 }
 
 template <typename T>
-void read_plane(const gl::Texture2D& target, GLenum format, GLenum type, std::vector<T>& plane) {
+void read_plane(const gl::Texture2D& target, GLenum format, GLenum type, Plane<T>& plane) {
   target.read(format, type, plane.data(), plane.size() * sizeof(T));
 }
 

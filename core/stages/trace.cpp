@@ -16,7 +16,7 @@ void reset(EffectBuffers& effects, size_t width, int height) {
     plane->resize(width * static_cast<size_t>(height));
   }
   tbb::parallel_for(0, height, [&](int y) {
-    const auto fill_row = [&](std::vector<vec3>& plane, const vec3& value) {
+    const auto fill_row = [&](Plane<vec3>& plane, const vec3& value) {
       std::fill_n(plane.begin() + static_cast<ptrdiff_t>(y * width), width, value);
     };
     fill_row(effects.shadow, vec3(1.0f));
@@ -28,7 +28,7 @@ void reset(EffectBuffers& effects, size_t width, int height) {
 }  // namespace
 
 void TraceStage::run(const TraceRequest& request, EffectBuffers& effects) {
-  reset(effects, static_cast<size_t>(request.inputs.width), request.inputs.height);
+  reset(effects, static_cast<size_t>(request.inputs.width), request.inputs.rows);
   effects.rays = {};
   effects.trace_calls_ms = 0.0;
   effects.rays_by_unit.assign(request.inputs.scene.units.size(), 0);

@@ -62,16 +62,25 @@ EffectBuffers predicted_effects(const Selection& selection) {
   return effects;
 }
 
+Selection run(HeuristicStage& stage, const FrameInputs& inputs, GBuffer& gbuffer) {
+  Areas areas;
+  count_areas(inputs.scene, gbuffer, areas);
+  Selection selection = stage.select(inputs, areas);
+  write_heuristic_mask(inputs.scene, selection, gbuffer);
+  stage.remember(selection);
+  return selection;
+}
+
 void BM_Frame(benchmark::State& state) {
   const int units = static_cast<int>(state.range(0));
   const Scene scene = make_scene(units);
   GBuffer gbuffer = make_gbuffer(units, 8);
   const FrameInputs inputs{scene, kWidth, kHeight, vec2(0.0f), scene.settings.budget_ms};
   HeuristicStage stage;
-  Selection selection = stage.run(inputs, gbuffer);
+  Selection selection = run(stage, inputs, gbuffer);
   stage.learn(inputs, selection, predicted_effects(selection), 50.0);
   for (auto _ : state) {
-    selection = stage.run(inputs, gbuffer);
+    selection = run(stage, inputs, gbuffer);
     state.PauseTiming();
     const EffectBuffers effects = predicted_effects(selection);
     state.ResumeTiming();

@@ -64,9 +64,21 @@ inline GBuffer make_gbuffer(const std::vector<int>& areas, int width = kWidth,
   return gbuffer;
 }
 
+/// Stage 2 of one frame. What is selected for a probe, while costs are unknown, is not remembered.
+inline Selection run(HeuristicStage& stage, const FrameInputs& inputs, GBuffer& gbuffer) {
+  Areas areas;
+  count_areas(inputs.scene, gbuffer, areas);
+  const Selection selection = stage.select(inputs, areas);
+  write_heuristic_mask(inputs.scene, selection, gbuffer);
+  const bool limited =
+      inputs.scene.settings.selection == SelectionPolicy::graph && inputs.budget_ms > 0.0f;
+  if (!limited || stage.calibrated()) stage.remember(selection);
+  return selection;
+}
+
 inline Selection run(HeuristicStage& stage, const Scene& scene, const std::vector<int>& areas) {
   GBuffer gbuffer = make_gbuffer(areas);
-  return stage.run({scene, kWidth, kHeight, vec2(0.0f), scene.settings.budget_ms}, gbuffer);
+  return run(stage, {scene, kWidth, kHeight, vec2(0.0f), scene.settings.budget_ms}, gbuffer);
 }
 
 inline Selection run_once(const Scene& scene, const std::vector<int>& areas) {

@@ -130,7 +130,7 @@ TEST(Heuristic, AreasOfALargePictureAreCountedExactly) {
     if (id > 0) ++expected[id - 1];
   }
   HeuristicStage stage;
-  const Selection s = stage.run({scene, 1283, 721}, gbuffer);
+  const Selection s = run(stage, {scene, 1283, 721}, gbuffer);
   for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(s.units[i].area, expected[i]);
 }
 
@@ -214,8 +214,8 @@ TEST(Heuristic, TheBudgetIsTheSamplesShareOfTheFrames) {
   calibrate(stage, scene, {100}, 1.0);
   scene.settings.budget_ms = 120.0f;
   GBuffer gbuffer = make_gbuffer({100});
-  EXPECT_TRUE(stage.run({scene, kWidth, kHeight, vec2(0), 120.0f}, gbuffer).units[0].selected);
-  EXPECT_FALSE(stage.run({scene, kWidth, kHeight, vec2(0), 60.0f}, gbuffer).units[0].selected);
+  EXPECT_TRUE(run(stage, {scene, kWidth, kHeight, vec2(0), 120.0f}, gbuffer).units[0].selected);
+  EXPECT_FALSE(run(stage, {scene, kWidth, kHeight, vec2(0), 60.0f}, gbuffer).units[0].selected);
 }
 
 TEST(Heuristic, InertiaKeepsWhatWasSelected) {
@@ -325,7 +325,7 @@ TEST(Heuristic, TheMaskShowsThePixelsOfWhatIsTraced) {
   scene.settings.budget_ms = 210.0f;
   GBuffer gbuffer = make_gbuffer({100, 900, 50});
   gbuffer.heuristic_mask.assign(gbuffer.object.size(), 0.5f);
-  stage.run({scene, kWidth, kHeight, vec2(0.0f), 210.0f}, gbuffer);
+  run(stage, {scene, kWidth, kHeight, vec2(0.0f), 210.0f}, gbuffer);
   for (size_t i = 0; i < gbuffer.object.size(); ++i) {
     const uint32_t id = gbuffer.object[i];
     ASSERT_EQ(gbuffer.heuristic_mask[i], id == 1 || id == 3 ? 1.0f : 0.0f) << "object id " << id;

@@ -184,6 +184,7 @@ FUNCTIONS = {
     "kestrelGetPassCount": (c_size_t, [c_void_p]),
     "kestrelGetPassName": (c_char_p, [c_void_p, c_size_t]),
     "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
+    "kestrelSetPasses": (c_int, [c_void_p, c_char_p]),
     "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelGetStats": (c_char_p, [c_void_p]),
     "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
@@ -414,6 +415,10 @@ class Renderer:
                  for index in range(self.c.kestrelGetPassCount(self.handle))]
         return {name: self.c.kestrelGetPassChannels(self.handle, encode(name)).decode()
                 for name in names}
+
+    def set_passes(self, names):
+        """Passes that the next frames keep."""
+        self.library.check(self.c.kestrelSetPasses(self.handle, encode(",".join(names))))
 
     def read_pass(self, name, width, height):
         """float32 (height * width, channels), row 0 at the bottom."""

@@ -299,10 +299,15 @@ KESTREL_API void kestrelReleaseRenderer(KestrelRenderer renderer);
 /* Called now and then from a rendering thread; `fraction` 0…1. Return false to cancel. */
 typedef bool (*KestrelProgressCallback)(void* user, float fraction, const char* status);
 
+/* Passes that the next frames keep: names separated by commas, or "all", as at first. Each takes
+ * memory of the picture's size; those left out cannot be read. An unknown name is an error. */
+KESTREL_API KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* passes);
+
 /* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. While it
  * runs, another kestrelRender() of the same renderer, and reading its passes, size or statistics,
- * fail with KESTREL_ERROR_INVALID_OPERATION (waiting could never end in a progress callback).
- * After an error or a cancel the last whole frame stays readable. */
+ * fail with KESTREL_ERROR_INVALID_OPERATION (waiting could never end in a progress callback). It
+ * waits for others that are just reading the last frame. After an error or a cancel the last whole
+ * frame stays readable. */
 KESTREL_API KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
                                        KestrelProgressCallback progress, void* user);
 

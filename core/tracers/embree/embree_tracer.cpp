@@ -13,7 +13,7 @@ namespace kestrel {
 void EmbreeTracer::trace(const TraceRequest& request, EffectBuffers& effects) {
   constexpr int kTile = TileTracer::kSize;
   const int columns = (request.inputs.width + kTile - 1) / kTile;
-  const int rows = (request.inputs.height + kTile - 1) / kTile;
+  const int rows = (request.inputs.rows + kTile - 1) / kTile;
   std::atomic<int> done = 0;
   std::atomic<bool> cancelled = false;
   tbb::enumerable_thread_specific<TileTracer> tracers(

@@ -89,9 +89,9 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
 }  // namespace
 
 uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
-  out.resize(inputs.width, inputs.height);
+  out.resize(inputs.width, inputs.rows);
   const CameraRays camera(inputs);
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, inputs.height, kTile, 0, inputs.width, kTile),
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, inputs.rows, kTile, 0, inputs.width, kTile),
                     [&](const tbb::blocked_range2d<int>& tile) {
                       // Packets start at multiples of their size however the range was split.
                       const auto first = [](int begin, int size) {
