@@ -138,6 +138,11 @@ def alpha_cutoff(material):
     return 0.5
 
 
+def blends_alpha(material):
+    """Whether the artist chose see-through alpha over holes with hard edges."""
+    return getattr(material, "blend_method", "") == "BLEND"
+
+
 def light_factor(light):
     """What newer versions multiply a light's colour and energy with."""
     factor = np.full(3, 2.0 ** getattr(light, "exposure", 0.0))

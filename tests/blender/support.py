@@ -109,6 +109,10 @@ class SceneTest(unittest.TestCase):
         render = self.scene.render
         render.engine = engine_id
         settings = render.image_settings
+        if hasattr(settings, "media_type"):  # 5.0 on
+            settings.media_type = ("MULTI_LAYER_IMAGE" if "MULTILAYER" in file_format else "IMAGE")
+        if hasattr(settings, "use_exr_interleave"):
+            settings.use_exr_interleave = True  # all layers in one part, as before 5.0
         settings.file_format, settings.color_mode = file_format, "RGBA"
         settings.color_depth, settings.exr_codec = "32", "ZIP"
         path = self.folder / f"{engine_id}.exr"

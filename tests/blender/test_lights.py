@@ -62,7 +62,7 @@ class LightTest(SceneTest):
         self.view(0.4)
         self.light("SUN", 1.5).matrix_world = turned(30)
         self.light("POINT", 60.0, (1, 1, 2), color=(1, 0.3, 0.2))
-        self.assert_color(self.middle(self.render()), self.middle(self.render_cycles()), 2e-3)
+        self.assert_color(self.middle(self.render()), self.middle(self.render_cycles(1024)), 2e-3)
 
     def test_color_by_nodes(self):
         self.view()

@@ -353,8 +353,9 @@ class PictureTest(SceneTest):
 
     def test_threshold_of_clipped_alpha(self):
         material, texture = textured("Soft", checker(), "ShaderNodeBsdfPrincipled")
-        if not hasattr(material, "alpha_threshold"):
-            self.skipTest("this Blender has no threshold")
+        material.blend_method = "CLIP"
+        if material.blend_method != "CLIP":
+            self.skipTest("Blender has no clipped alpha from 4.2 on")
         pixels = np.ones((4, 4, 4), np.float32)
         pixels[..., 3] = 0.4
         texture.image = image("Thin", pixels)
@@ -366,6 +367,18 @@ class PictureTest(SceneTest):
             material.blend_method, material.alpha_threshold = "CLIP", threshold
             planes = self.render_planes()
             self.assertAlmostEqual(float(planes["ViewLayer.Depth.Z"][16, 16]) / depth, 1.0, 4)
+
+    def test_alpha_blend(self):
+        """What is behind shines through as much as the image says, where the artist wants that."""
+        pixels = np.ones((4, 4, 4), np.float32)
+        pixels[..., 3] = 0.25
+        material, texture = textured("Soft", image("Thin", pixels), "ShaderNodeBsdfPrincipled")
+        material.blend_method = "BLEND"
+        tree = material.node_tree
+        tree.links.new(texture.outputs["Alpha"], tree.nodes["Principled BSDF"].inputs["Alpha"])
+        self.plane("Plane", 4, material)
+        self.plane("Behind", 8, emission("White", (1, 1, 1)), Matrix.Translation((0, 0, -1)))
+        self.assert_color(self.render()[16, 16], 0.75, 5e-3)
 
     def test_mask_by_other_images(self):
         """Holes from an image of another size, by its alpha or brightness, either way round."""

@@ -264,6 +264,14 @@ class AgainTest(SceneTest):
         self.assertEqual(self.left_and_right(), (False, False))
         self.assertEqual([key for key in core.sent if key[0] == 0], [])
 
+    def test_objects_share_their_mesh(self):
+        self.link("Twin", self.box.data, Matrix.Translation((1, 0, 0)))
+        changed = self.link("Changed", self.box.data, Matrix.Translation((-1, 0, 0)))
+        changed.modifiers.new("Array", "ARRAY")
+        self.render()
+        core = next(iter(session._sessions.values()))
+        self.assertEqual(len([key for key in core.sent if key[0] == 0]), 2)
+
     def test_unchanged_is_not_sent_again(self):
         self.light("POINT", 10)
         self.render()

@@ -15,6 +15,10 @@ from . import capi
 PACKAGED = Path(__file__).resolve().parent / "lib" / "libkestrel.so"
 PLUGIN_NAME = "libkestrel_oiio.so"
 
+# Blender has loaded libraries of its own, perhaps other versions of those that Kestrel needs, such
+# as Embree: their functions must not take the place of ours.
+MODE = ctypes.RTLD_LOCAL | getattr(os, "RTLD_DEEPBIND", 0)
+
 _library = None
 _error = ""
 _table = None
@@ -33,7 +37,7 @@ def _load(path):
             f"There is no Kestrel library at {path}. Install the add-on from its zip file, or name "
             "a libkestrel.so in the environment variable KESTREL_LIBRARY and restart Blender.")
     try:
-        cdll = ctypes.CDLL(str(path))
+        cdll = ctypes.CDLL(str(path), mode=MODE)
     except OSError as error:
         raise capi.KestrelError(
             f"The Kestrel library could not be loaded: {error}. Install what is missing, or an "
@@ -98,7 +102,7 @@ def image_plugin_available():
         chosen = os.environ.get("KESTREL_IMAGE_PLUGIN")
         path = Path(chosen) if chosen else library_path().with_name(PLUGIN_NAME)
         try:
-            ctypes.CDLL(str(path))
+            ctypes.CDLL(str(path), mode=MODE)
             _plugin_loads = True
         except OSError:
             _plugin_loads = False

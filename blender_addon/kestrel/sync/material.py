@@ -41,7 +41,7 @@ class Surface:
     reflection_color: tuple = WHITE
     transmission_color: tuple = WHITE
     alpha: float = 1.0
-    masked: bool = False        # the diffuse texture's alpha cuts holes
+    masked: bool = False        # the diffuse texture's alpha counts: it cuts holes or blends
     transparent: bool = False   # only lets light through: a side of a mix that may become a mask
     normal: Value = field(default_factory=Value)
     normal_strength: float = 1.0
@@ -360,10 +360,10 @@ def describe(export, material, surface):
     item.normal_strength = surface.normal_strength
     item.tiling[:], item.offset[:] = _one_mapping(surface, material, export.warn)
     item.casts_shadow = getattr(getattr(material, "kestrel", None), "casts_shadow", True)
-    if surface.masked:
+    if surface.masked and not compat.blends_alpha(material):
         item.alpha_mode = capi.ALPHA_MASK
         item.alpha_cutoff = compat.alpha_cutoff(material)
-    elif surface.alpha < 1.0:
+    elif surface.masked or surface.alpha < 1.0:
         item.alpha_mode = capi.ALPHA_BLEND
     return item
 

@@ -76,7 +76,7 @@ def sync_mesh(export, obj):
         return export.meshes[identity]
     original = obj.original
     own = original.modifiers or obj.type != "MESH"
-    key = compat.datablock_key(original if own else obj.data)
+    key = compat.datablock_key(original if own else original.data)
     slot_count = len(obj.material_slots)
     if obj.type == "MESH" and not obj.data.is_editmode:
         ident = _send(export, obj.data, key, obj.data.name_full, slot_count)
