@@ -8,6 +8,8 @@ At least 99.5 % of the pixels must show the same object, and on those the lighti
 """
 
 import argparse
+import os
+import re
 import sys
 from pathlib import Path
 
@@ -20,6 +22,14 @@ import metrics
 
 SKIPPED = 77
 SAME_OBJECT, LIGHTING_DB = 0.995, 40.0
+
+
+def missing_data(scene):
+    """The first file of the scene data that the scene needs and that is not there, or None."""
+    default = rendering.FOLDER.parents[2] / "shared" / "scenes"
+    folder = Path(os.environ.get("KESTREL_SCENE_DATA") or default)
+    names = re.findall(r"\$\{KESTREL_SCENE_DATA\}/([^\"]+)", scene.read_text(encoding="utf-8"))
+    return next((folder / name for name in names if not (folder / name).exists()), None)
 
 
 def planes_of(path):
@@ -49,9 +59,9 @@ def main():
     parser.add_argument("--size", default="640x360")
     parser.add_argument("scene", type=Path)
     args = parser.parse_args()
-    reason = rendering.gl_error(args.build)
-    if reason:
-        print(f"SKIP: no OpenGL: {reason}")
+    missing, reason = missing_data(args.scene), rendering.gl_error(args.build)
+    if missing or reason:
+        print(f"SKIP: scene data missing: {missing}" if missing else f"SKIP: no OpenGL: {reason}")
         return SKIPPED
     name = f"primaries.{args.scene.stem}"
     work = args.build / "image_work" / name
