@@ -27,12 +27,12 @@ TITLES = {"scene": "Of a scene", "object": "Of an object"}
 
 
 def allowed(row):
-    if row["items"]:
+    if row.get("items"):
         return ", ".join(f"`{item}`" for item in row["items"])
     if row["type"] in ("int", "float", "color"):
         number = "three numbers " if row["type"] == "color" else ""
         unit = f" {row['unit']}" if row["unit"] else ""
-        return f"{number}{row['min']:g} to {row['max']:g}{unit}"
+        return f"{number}{row['min']:.12g} to {row['max']:.12g}{unit}"
     return "`true`, `false`"
 
 
