@@ -103,7 +103,8 @@ class ErrorTest(SceneTest):
         with contextlib.redirect_stdout(said):
             self.render()
             self.render()
-        self.assertEqual(said.getvalue().count("kestrel: warning: Light 'Area': area lights are drawn"), 1)
+        text = "kestrel: warning: Light 'Area': area lights are drawn"
+        self.assertEqual(said.getvalue().count(text), 1)
 
 
 class CancelTest(SceneTest):

@@ -432,7 +432,8 @@ class PictureTest(SceneTest):
         material, tree, output = new_material("Bumpy")
         shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
         shader.inputs["Color"].default_value = (1, 1, 1, 1)
-        texture, normal = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeNormalMap")
+        texture, normal = (tree.nodes.new(f"ShaderNode{kind}") for kind in
+                           ("TexImage", "NormalMap"))
         texture.image = image("Tilt", pixels, non_color=True)
         tree.links.new(texture.outputs["Color"], normal.inputs["Color"])
         tree.links.new(normal.outputs["Normal"], shader.inputs["Normal"])
@@ -457,4 +458,5 @@ class HighlightTest(unittest.TestCase):
         """F0 / (4 r⁴) at normal incidence, GGX and Fresnel of Cycles."""
         for roughness in (0.4, 0.6, 0.9):
             specular, exponent = sync_material.highlight((0.04,) * 3, roughness)
-            self.assertAlmostEqual(specular[0], 0.04 / (4 * roughness ** 4), 4 if exponent > 1 else 1)
+            self.assertAlmostEqual(specular[0], 0.04 / (4 * roughness ** 4),
+                                   4 if exponent > 1 else 1)

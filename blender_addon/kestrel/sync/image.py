@@ -138,8 +138,10 @@ def sync_texture(export, texture):
     shown = image or original(mask.image)
     srgb = image is not None and is_srgb(image, export.warn)
     extra = (srgb, texture.nearest, texture.extension)
-    by = (compat.datablock_key(original(mask.image)), mask.from_alpha, mask.inverted) if mask else ()
-    key = f"{image and compat.datablock_key(image)}/{extra}/{by}"
+    key = f"{image and compat.datablock_key(image)}/{extra}"
+    if mask:
+        source = compat.datablock_key(original(mask.image))
+        key += f"/{source}/{mask.from_alpha}/{mask.inverted}"
     if key not in export.textures:
         if shown.source in {"SEQUENCE", "MOVIE", "TILED"}:
             export.warn(f"Image '{shown.name}': {shown.source.lower()} images are not supported; "
