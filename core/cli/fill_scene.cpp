@@ -74,6 +74,58 @@ void set_world(KestrelScene scene, const WorldDescription& world) {
   check(kestrelSetWorld(scene, &w));
 }
 
+/// Which items something refers to: files may hold many more, which need not be loaded.
+struct Used {
+  explicit Used(const SceneDescription& scene)
+      : meshes(scene.meshes.size()),
+        materials(scene.materials.size()),
+        textures(scene.textures.size()) {
+    for (const ObjectDescription& object : scene.objects) {
+      meshes[object.mesh] = true;
+      for (const int index : object.materials) {
+        if (index != kNoIndex) materials[index] = true;
+      }
+    }
+    for (size_t i = 0; i < materials.size(); ++i) {
+      if (materials[i]) add_textures(scene.materials[i].values);
+    }
+    for (const int index : scene.world.textures) {
+      if (index != kNoIndex) textures[index] = true;
+    }
+  }
+
+  std::vector<bool> meshes, materials, textures;
+
+ private:
+  void add_textures(const KestrelMaterial& m) {
+    for (const uint64_t id : {m.emission_texture, m.ambient_texture, m.diffuse_texture,
+                              m.specular_texture, m.normal_texture, m.optical_texture}) {
+      if (id) textures[id - 1] = true;
+    }
+  }
+};
+
+void set_material(KestrelScene scene, uint64_t id, const MaterialDescription& description) {
+  KestrelMaterial material = description.values;
+  material.name = description.name.c_str();
+  check(kestrelSetMaterial(scene, id, &material));
+}
+
+void set_light(KestrelScene scene, uint64_t id, const LightDescription& description) {
+  KestrelLight light = description.values;
+  light.name = description.name.c_str();
+  check(kestrelSetLight(scene, id, &light));
+}
+
+/// Calls `set` for every item that is used.
+template <typename T>
+void set_used(KestrelScene scene, const std::vector<T>& items, const std::vector<bool>& used,
+              void (*set)(KestrelScene, uint64_t, const T&)) {
+  for (size_t i = 0; i < items.size(); ++i) {
+    if (used[i]) set(scene, i + 1, items[i]);
+  }
+}
+
 }  // namespace
 
 void check(KestrelError error) {
@@ -89,25 +141,14 @@ void fill_scene(const SceneDescription& description, int width, int height, Kest
   }
   const KestrelCamera camera = camera_for(description.camera, width, height);
   check(kestrelSetCamera(scene, &camera));
-  for (size_t i = 0; i < description.textures.size(); ++i) {
-    set_texture(scene, i + 1, description.textures[i]);
-  }
-  for (size_t i = 0; i < description.materials.size(); ++i) {
-    KestrelMaterial material = description.materials[i].values;
-    material.name = description.materials[i].name.c_str();
-    check(kestrelSetMaterial(scene, i + 1, &material));
-  }
-  for (size_t i = 0; i < description.lights.size(); ++i) {
-    KestrelLight light = description.lights[i].values;
-    light.name = description.lights[i].name.c_str();
-    check(kestrelSetLight(scene, i + 1, &light));
-  }
-  for (size_t i = 0; i < description.meshes.size(); ++i) {
-    set_mesh(scene, i + 1, description.meshes[i]);
-  }
-  for (size_t i = 0; i < description.objects.size(); ++i) {
-    set_object(scene, i + 1, description.objects[i]);
-  }
+  const Used used(description);
+  set_used(scene, description.textures, used.textures, set_texture);
+  set_used(scene, description.materials, used.materials, set_material);
+  set_used(scene, description.meshes, used.meshes, set_mesh);
+  set_used(scene, description.lights, std::vector<bool>(description.lights.size(), true),
+           set_light);
+  set_used(scene, description.objects, std::vector<bool>(description.objects.size(), true),
+           set_object);
   set_world(scene, description.world);
   check(kestrelCommitScene(scene));
 }

@@ -126,12 +126,6 @@ void append(const MeshDescription& mesh, const mat4x3& m, uint32_t slot, MeshDes
   out.triangle_slots.resize(out.triangles.size(), slot);
 }
 
-void drop_empty_attributes(MeshDescription& mesh, bool has_normals, bool has_uvs, bool has_slots) {
-  if (!has_normals) mesh.corner_normals.clear();
-  if (!has_uvs) mesh.corner_uvs.clear();
-  if (!has_slots) mesh.triangle_slots.clear();
-}
-
 const aiScene& import_file(Assimp::Importer& importer, const std::string& path) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -178,34 +172,44 @@ Model read_model(const std::string& path, UpAxis up) {
   return model;
 }
 
+MeshDescription joined(const std::vector<PlacedMesh>& parts) {
+  MeshDescription mesh;
+  bool has_normals = false, has_uvs = false, has_slots = false;
+  for (const PlacedMesh& part : parts) {
+    has_normals |= !part.mesh->corner_normals.empty();
+    has_uvs |= !part.mesh->corner_uvs.empty();
+    has_slots |= part.slot != 0;
+    append(*part.mesh, part.placement, part.slot, mesh);
+  }
+  if (!has_normals) mesh.corner_normals.clear();
+  if (!has_uvs) mesh.corner_uvs.clear();
+  if (!has_slots) mesh.triangle_slots.clear();
+  return mesh;
+}
+
 MeshDescription join_model(const Model& model, const std::string& part) {
   const auto is_part = [&](const ModelNode& node) {
     return part.empty() || node.name == part || model.meshes[node.mesh].name == part;
   };
   std::map<int, uint32_t> slots;  // by material
-  std::set<std::string> parts;
-  bool has_normals = false, has_uvs = false;
+  std::set<std::string> names;
   for (const ModelNode& node : model.nodes) {
-    parts.insert(node.name);
-    if (!is_part(node)) continue;
-    slots[model.mesh_materials[node.mesh]] = 0;
-    has_normals |= !model.meshes[node.mesh].corner_normals.empty();
-    has_uvs |= !model.meshes[node.mesh].corner_uvs.empty();
+    names.insert(node.name);
+    if (is_part(node)) slots[model.mesh_materials[node.mesh]] = 0;
   }
   if (slots.empty()) {
     throw std::runtime_error(
-        fmt::format("no part is called '{}'; the file has: {}", part, fmt::join(parts, ", ")));
+        fmt::format("no part is called '{}'; the file has: {}", part, fmt::join(names, ", ")));
   }
   uint32_t next = 0;
   for (auto& [material, slot] : slots) slot = next++;
-  MeshDescription mesh;
+  std::vector<PlacedMesh> parts;
   for (const ModelNode& node : model.nodes) {
     if (!is_part(node)) continue;
-    append(model.meshes[node.mesh], node.model_from_mesh, slots[model.mesh_materials[node.mesh]],
-           mesh);
+    parts.push_back(
+        {&model.meshes[node.mesh], node.model_from_mesh, slots[model.mesh_materials[node.mesh]]});
   }
-  drop_empty_attributes(mesh, has_normals, has_uvs, next > 1);
-  return mesh;
+  return joined(parts);
 }
 
 }  // namespace kestrel::cli

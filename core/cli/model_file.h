@@ -30,6 +30,16 @@ struct Model {
 /// Throws std::runtime_error with the reason where the file cannot be read or holds no triangles.
 Model read_model(const std::string& path, UpAxis up);
 
+/// A mesh where it stands, and the slot that its triangles get.
+struct PlacedMesh {
+  const MeshDescription* mesh;
+  mat4x3 placement;
+  uint32_t slot;
+};
+
+/// One mesh of them all. Mirroring placements keep the faces' sides.
+MeshDescription joined(const std::vector<PlacedMesh>& parts);
+
 /// All nodes (those whose node or mesh is called `part`, where it is not empty) as one mesh, in the
 /// model's frame; a slot for each of the file's materials that is used, in the file's order.
 /// Throws std::runtime_error that lists the parts where there is none of that name.

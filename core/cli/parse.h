@@ -41,7 +41,6 @@ class ModelCache {
     bool imported = false;  // its meshes, materials and textures are part of the scene
     int first_mesh = 0;
     int first_material = 0;
-    int first_texture = 0;
   };
   /// The model that the text `path` names; `up` for files that do not say it.
   Entry& read(const JsonNode& path, UpAxis up);

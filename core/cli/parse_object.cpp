@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Objects: placed meshes, their instances, and whole models.
 #include <algorithm>
+#include <iterator>
+#include <map>
 
 #include "cli/parse.h"
 
@@ -8,6 +10,7 @@ namespace kestrel::cli {
 namespace {
 
 constexpr size_t kMaximumSlots = 65536;
+constexpr size_t kMaximumJoinedTriangles = 50'000'000;
 
 /// Whether `text` fits `pattern`, in which * stands for any run of characters.
 bool matches(std::string_view pattern, std::string_view text) {
@@ -120,21 +123,37 @@ std::vector<Replacement> parse_replacements(const JsonNode& node, const Model& m
   return out;
 }
 
+/// The index of `texture` in the scene: that of an equal one where several models use one image.
+int add_texture(const TextureDescription& texture, SceneDescription& scene) {
+  const auto* file = std::get_if<TextureFile>(&texture.source);
+  const auto is_same = [&](const TextureDescription& other) {
+    const auto* other_file = std::get_if<TextureFile>(&other.source);
+    return file && other_file && file->path == other_file->path && texture.srgb == other.srgb &&
+           texture.nearest == other.nearest && texture.extension == other.extension;
+  };
+  const auto it = std::find_if(scene.textures.begin(), scene.textures.end(), is_same);
+  if (it != scene.textures.end()) return static_cast<int>(it - scene.textures.begin());
+  scene.textures.push_back(texture);
+  return static_cast<int>(scene.textures.size()) - 1;
+}
+
 /// Makes the model's meshes, textures and materials the scene's, once.
 void add_model(ModelCache::Entry& entry, SceneDescription& scene) {
   if (entry.imported) return;
   entry.imported = true;
   entry.first_mesh = static_cast<int>(scene.meshes.size());
   entry.first_material = static_cast<int>(scene.materials.size());
-  entry.first_texture = static_cast<int>(scene.textures.size());
   const Model& model = entry.model;
   scene.meshes.insert(scene.meshes.end(), model.meshes.begin(), model.meshes.end());
-  scene.textures.insert(scene.textures.end(), model.textures.begin(), model.textures.end());
+  std::vector<uint64_t> ids;  // in the scene, by the model's index
+  for (const TextureDescription& texture : model.textures) {
+    ids.push_back(static_cast<uint64_t>(add_texture(texture, scene)) + 1);
+  }
   for (MaterialDescription material : model.materials) {
     KestrelMaterial& m = material.values;
     for (uint64_t* id : {&m.emission_texture, &m.ambient_texture, &m.diffuse_texture,
                          &m.specular_texture, &m.normal_texture, &m.optical_texture}) {
-      if (*id) *id += static_cast<uint64_t>(entry.first_texture);
+      if (*id) *id = ids.at(*id - 1);
     }
     scene.materials.push_back(std::move(material));
   }
@@ -152,38 +171,83 @@ std::string unit_of(const ModelNode& node, const std::string& material,
   return fallback;
 }
 
+int material_of(int model_material, const ModelCache::Entry& entry,
+                const std::vector<Replacement>& replacements) {
+  const std::string& name = entry.model.materials.at(model_material).name;
+  for (const Replacement& r : replacements) {
+    if (matches(r.pattern, name)) return r.material;
+  }
+  return entry.first_material + model_material;
+}
+
+/// The objects of each unit as one object with one mesh, a slot for each of its materials.
+std::vector<ObjectDescription> joined_by_unit(const std::vector<ObjectDescription>& objects,
+                                              const JsonNode& node, SceneDescription& scene) {
+  std::vector<std::string> units;  // in order of appearance
+  std::map<std::string, std::vector<const ObjectDescription*>> members;
+  size_t triangles = 0;
+  for (const ObjectDescription& object : objects) {
+    if (members[object.unit].empty()) units.push_back(object.unit);
+    members[object.unit].push_back(&object);
+    triangles += scene.meshes[object.mesh].triangles.size();
+  }
+  if (triangles > kMaximumJoinedTriangles) {
+    node.fail("joined it would have {} triangles; without 'join' its instances share memory",
+              triangles);
+  }
+  std::vector<ObjectDescription> out;
+  for (const std::string& unit : units) {
+    ObjectDescription object = *members[unit].front();
+    object.name = object.unit;
+    object.materials.clear();
+    object.world_from_object = mat4x3(1.0f);
+    std::vector<PlacedMesh> parts;
+    for (const ObjectDescription* member : members[unit]) {
+      const int material = member->materials[0];
+      const auto it = std::find(object.materials.begin(), object.materials.end(), material);
+      const auto slot = static_cast<uint32_t>(it - object.materials.begin());
+      if (it == object.materials.end()) object.materials.push_back(material);
+      parts.push_back({&scene.meshes[member->mesh], member->world_from_object, slot});
+    }
+    MeshDescription mesh = joined(parts);
+    mesh.name = unit;
+    object.mesh = static_cast<int>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    out.push_back(std::move(object));
+  }
+  return out;
+}
+
 void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& context) {
-  node.expect_keys(object_keys({"import", "up", "units", "replace"}));
+  node.expect_keys(object_keys({"import", "up", "units", "replace", "join"}));
   const std::vector<mat4x3> placements = parse_placements(node);
   const std::vector<UnitRule> rules = parse_unit_rules(node);
   const auto settings = parse_settings(node, "object");
-  const auto name = node.find("name");
-  const auto unit = node.find("unit");
-  const std::string unit_name = unit ? unit->text() : name ? name->text() : "";
+  const auto name = node.find(node.has("unit") ? "unit" : "name");
+  const std::string unit = name ? name->text() : "";
+  const auto join = node.find("join");
   ModelCache::Entry& entry = context.models.read(file, parse_up(node));
-  const auto replacements = parse_replacements(node, entry.model, context.materials);
-  SceneDescription& scene = context.scene;
-  expect_room(node, placements.size() * entry.model.nodes.size(), scene);
-  add_model(entry, scene);
+  const Model& model = entry.model;
+  const auto replacements = parse_replacements(node, model, context.materials);
+  expect_room(node, placements.size() * model.nodes.size(), context.scene);
+  add_model(entry, context.scene);
+  std::vector<ObjectDescription> objects;
   for (const mat4x3& placement : placements) {
-    for (const ModelNode& part : entry.model.nodes) {
-      const int material = entry.model.mesh_materials[part.mesh];
-      const std::string& material_name = entry.model.materials.at(material).name;
+    for (const ModelNode& part : model.nodes) {
+      const int material = model.mesh_materials[part.mesh];
       ObjectDescription object;
-      object.name = part.name.empty() ? unit_name : part.name;
-      object.unit = unit_of(part, material_name, rules, unit_name.empty() ? part.name : unit_name);
+      object.name = part.name.empty() ? unit : part.name;
+      object.unit =
+          unit_of(part, model.materials.at(material).name, rules, unit.empty() ? part.name : unit);
       object.mesh = entry.first_mesh + part.mesh;
-      object.materials = {entry.first_material + material};
-      for (const Replacement& r : replacements) {
-        if (!matches(r.pattern, material_name)) continue;
-        object.materials[0] = r.material;
-        break;
-      }
+      object.materials = {material_of(material, entry, replacements)};
       object.world_from_object = combined(placement, part.model_from_mesh);
       object.settings = settings;
-      scene.objects.push_back(std::move(object));
+      objects.push_back(std::move(object));
     }
   }
+  if (join && join->boolean()) objects = joined_by_unit(objects, node, context.scene);
+  std::move(objects.begin(), objects.end(), std::back_inserter(context.scene.objects));
 }
 
 // ---- placed meshes -----------------------------------------------------------------------------
