@@ -23,18 +23,17 @@ using QueryContext = RTCIntersectContext;
 #endif
 
 /// One traversal's context. Derive from it to give filter functions more; `context` comes first so
-/// that a filter can cast back.
+/// that a filter can cast back. Embree's flag for coherent rays is not used: in scenes with many
+/// overlapping instances Embree 3's frustum traversal of infinite rays all but hangs, and packets
+/// are faster than single rays without it too.
 struct Query {
   QueryContext context;
-  bool coherent;
 
-  explicit Query(bool is_coherent) : coherent(is_coherent) {
+  Query() {
 #if KESTREL_EMBREE_MAJOR >= 4
     rtcInitRayQueryContext(&context);
 #else
     rtcInitIntersectContext(&context);
-    context.flags =
-        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
 #endif
   }
 };
@@ -44,7 +43,6 @@ struct Query {
 inline RTCIntersectArguments intersect_arguments(Query& query) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.flags = query.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   arguments.context = &query.context;
   return arguments;
 }
@@ -52,7 +50,6 @@ inline RTCIntersectArguments intersect_arguments(Query& query) {
 inline RTCOccludedArguments occluded_arguments(Query& query) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = query.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   arguments.context = &query.context;
   return arguments;
 }

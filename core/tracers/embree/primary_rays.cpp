@@ -69,7 +69,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
   }
-  embree::Query query(true);
+  embree::Query query;
   embree::intersect(rt.handle(), query, valid, packet);
   for (int lane = 0; lane < embree::kPacket; ++lane) {
     if (valid[lane] == 0) continue;

@@ -38,7 +38,7 @@ struct ShadowState {
 /// Query with what the filter of shadow rays needs: their states, by RTCRay::id.
 struct ShadowQuery : Query {
   ShadowState* states;
-  ShadowQuery(bool coherent, ShadowState* states_by_id) : Query(coherent), states(states_by_id) {}
+  explicit ShadowQuery(ShadowState* states_by_id) : states(states_by_id) {}
 };
 
 }  // namespace kestrel::embree

@@ -25,10 +25,10 @@ void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance
   tasks_.push_back(task);
 }
 
-double ShadowQueue::trace(const RtScene& scene, bool coherent) {
+double ShadowQueue::trace(const RtScene& scene) {
   states_.assign(tasks_.size(), embree::ShadowState());
   const auto begin = std::chrono::steady_clock::now();
-  embree::ShadowQuery query(coherent, states_.data());
+  embree::ShadowQuery query(states_.data());
   for (size_t p = 0; p < packets_.size(); ++p) {
     alignas(64) int valid[embree::kPacket];
     for (size_t lane = 0; lane < embree::kPacket; ++lane) {

@@ -25,8 +25,8 @@ class ShadowQueue {
   /// Traces all, calls `receive(task, transmitted)` in the order of the pushes, and empties the
   /// queue. `transmitted` is the share of light left, per colour. Returns milliseconds in Embree.
   template <typename Receive>
-  double resolve(const RtScene& scene, bool coherent, Receive&& receive) {
-    const double ms = trace(scene, coherent);
+  double resolve(const RtScene& scene, Receive&& receive) {
+    const double ms = trace(scene);
     for (size_t i = 0; i < tasks_.size(); ++i) {
       const bool blocked = packets_[i / embree::kPacket].tfar[i % embree::kPacket] < 0.0f;
       receive(tasks_[i], blocked ? vec3(0.0f) : states_[i].transmitted);
@@ -37,7 +37,7 @@ class ShadowQueue {
   }
 
  private:
-  double trace(const RtScene& scene, bool coherent);
+  double trace(const RtScene& scene);
 
   std::vector<embree::RayPacket> packets_;
   std::vector<Task> tasks_;

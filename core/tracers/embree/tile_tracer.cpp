@@ -124,7 +124,7 @@ void TileTracer::trace_primary_shadows() {
       count(p.unit, rays_.shadow);
     }
     trace_calls_ms_ +=
-        shadows_.resolve(rt_, true, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
+        shadows_.resolve(rt_, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
           effects_.shadow[task.target] -= task.light * (1.0f - transmitted);
         });
   }
@@ -170,7 +170,7 @@ void TileTracer::trace_depth() {
   hits_.clear();
   for (const Path& path : paths_) hits_.push_back(ray_hit(path.origin, path.direction));
   const auto begin = std::chrono::steady_clock::now();
-  embree::Query query(false);
+  embree::Query query;
   for (RTCRayHit& ray : hits_) embree::intersect1(rt_.handle(), query, ray);
   trace_calls_ms_ +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -178,7 +178,7 @@ void TileTracer::trace_depth() {
   next_paths_.clear();
   for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i]);
   trace_calls_ms_ +=
-      shadows_.resolve(rt_, false, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
+      shadows_.resolve(rt_, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
         const bool reflected = task.target & 1u;
         (reflected ? effects_.reflection : effects_.refraction)[task.target >> 1] +=
             task.light * transmitted;
