@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -85,6 +86,25 @@ Corner corner_key(const Mesh& mesh, const Triangle& triangle, uint32_t index) {
       index};
 }
 
+/// Writes the tangents of the corners from `begin` on that share a frame; returns their end.
+size_t share_tangent(const Mesh& mesh, const std::vector<Corner>& corners, size_t begin,
+                     std::vector<vec4>& tangents) {
+  vec3 sum(0.0f);
+  vec3 normal(0.0f);
+  size_t end = begin;
+  for (; end < corners.size() && corners[end].same_frame(corners[begin]); ++end) {
+    const uint32_t index = corners[end].index;
+    const Triangle triangle(mesh, index / 3);
+    normal = corner_normal(mesh, triangle, index);
+    sum += unit_across(triangle.along_u(), normal) * triangle.angle(static_cast<int>(index % 3));
+  }
+  const vec3 mean = unit_across(sum, normal);
+  const vec3 tangent = mean == vec3(0.0f) ? any_perpendicular(normal) : mean;
+  const float sign = corners[begin].orientation < 0 ? -1.0f : 1.0f;
+  for (size_t i = begin; i < end; ++i) tangents[corners[i].index] = vec4(tangent, sign);
+  return end;
+}
+
 }  // namespace
 
 vec3 any_perpendicular(const vec3& normal) {
@@ -103,20 +123,13 @@ std::vector<vec4> make_tangents(const Mesh& mesh) {
   tbb::parallel_sort(corners.begin(), corners.end());
 
   std::vector<vec4> tangents(corners.size());
-  for (size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
-    vec3 sum(0.0f);
-    vec3 normal(0.0f);
-    for (end = begin; end < corners.size() && corners[end].same_frame(corners[begin]); ++end) {
-      const uint32_t index = corners[end].index;
-      const Triangle triangle(mesh, index / 3);
-      normal = corner_normal(mesh, triangle, index);
-      sum += unit_across(triangle.along_u(), normal) * triangle.angle(static_cast<int>(index % 3));
-    }
-    const vec3 mean = unit_across(sum, normal);
-    const vec3 tangent = mean == vec3(0.0f) ? any_perpendicular(normal) : mean;
-    const float sign = corners[begin].orientation < 0 ? -1.0f : 1.0f;
-    for (size_t i = begin; i < end; ++i) tangents[corners[i].index] = vec4(tangent, sign);
-  }
+  constexpr size_t kBlock = 4096;  // corners; a block does the frames that begin in it
+  tbb::parallel_for(size_t{0}, (corners.size() + kBlock - 1) / kBlock, [&](size_t block) {
+    const size_t block_end = std::min(corners.size(), (block + 1) * kBlock);
+    size_t begin = block * kBlock;
+    while (begin > 0 && begin < block_end && corners[begin].same_frame(corners[begin - 1])) ++begin;
+    while (begin < block_end) begin = share_tangent(mesh, corners, begin, tangents);
+  });
   return tangents;
 }
 

@@ -365,6 +365,31 @@ TEST(Tangents, OfDegenerateUvsAreStillAcrossTheNormal) {
   }
 }
 
+TEST(Tangents, AreSharedByHoweverManyTriangles) {
+  // A flat fan of 20000 triangles around the origin, unwrapped as seen from above.
+  constexpr uint32_t kCount = 20000;
+  Square fan;
+  fan.positions = {0, 0, 0};
+  fan.triangles.clear();
+  fan.uvs.clear();
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const float angle = 2.0f * kPi * static_cast<float>(i) / kCount;
+    fan.positions.insert(fan.positions.end(), {std::cos(angle), std::sin(angle), 0.0f});
+    for (const uint32_t v : {0u, i + 1, (i + 1) % kCount + 1}) fan.triangles.push_back(v);
+  }
+  for (const uint32_t v : fan.triangles) {
+    fan.uvs.push_back(fan.positions[3 * v]);
+    fan.uvs.push_back(fan.positions[3 * v + 1]);
+  }
+  Builder builder;
+  const auto mesh = with_normal_map(builder, fan);
+  ASSERT_EQ(mesh->triangles.size(), kCount);
+  for (uint32_t t = 0; t < kCount; ++t) {
+    EXPECT_EQ(mesh->corner_tangents[3 * t], mesh->corner_tangents[0]);
+  }
+  EXPECT_NEAR(mesh->corner_tangents[0].x, 1.0f, 1e-5f);
+}
+
 TEST(Tangents, AreMadeOnceAndOnlyWhereNeeded) {
   Builder builder;
   builder.set_object(7, object_of(1, "plain"));
