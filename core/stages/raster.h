@@ -22,7 +22,8 @@ class RasterStage {
   void update(const std::shared_ptr<const Scene>& scene);
 
   /// Fills every plane of `out` except heuristic_mask, lighting included. Visibility is exact per
-  /// sample at FrameInputs::subpixel. The scene is the one last given to update().
+  /// sample at FrameInputs::subpixel; of coinciding surfaces the first object shows. The scene is
+  /// the one last given to update().
   void run(const FrameInputs& inputs, GBuffer& out);
 
   /// Visible pixels per unit, measured with one occlusion query a unit against the depth of the
