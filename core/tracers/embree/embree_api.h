@@ -54,10 +54,6 @@ inline RTCOccludedArguments occluded_arguments(Query& query) {
   return arguments;
 }
 
-inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
-  RTCIntersectArguments arguments = intersect_arguments(query);
-  rtcIntersect1(scene, &ray, &arguments);
-}
 inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
   RTCIntersectArguments arguments = intersect_arguments(query);
   rtcIntersect16(valid, scene, &rays, &arguments);
@@ -69,9 +65,6 @@ inline void occluded(RTCScene scene, Query& query, const int* valid, RayPacket& 
 
 #else
 
-inline void intersect1(RTCScene scene, Query& query, RTCRayHit& ray) {
-  rtcIntersect1(scene, &query.context, &ray);
-}
 inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
   rtcIntersect16(valid, scene, &query.context, &rays);
 }

@@ -19,23 +19,21 @@ vec3 leave_surface(const vec3& position, const vec3& normal, float travelled) {
   return position + normal * (1.6e-5f * magnitude);
 }
 
-RTCRayHit ray_hit(const vec3& origin, const vec3& direction) {
-  RTCRayHit r;
-  r.ray.org_x = origin.x;
-  r.ray.org_y = origin.y;
-  r.ray.org_z = origin.z;
-  r.ray.dir_x = direction.x;
-  r.ray.dir_y = direction.y;
-  r.ray.dir_z = direction.z;
-  r.ray.tnear = 0.0f;
-  r.ray.tfar = INFINITY;
-  r.ray.time = 0.0f;
-  r.ray.mask = ~0u;
-  r.ray.id = 0;
-  r.ray.flags = 0;
-  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  return r;
+void set_lane(embree::RayHitPacket& packet, int lane, const vec3& origin, const vec3& direction) {
+  packet.ray.org_x[lane] = origin.x;
+  packet.ray.org_y[lane] = origin.y;
+  packet.ray.org_z[lane] = origin.z;
+  packet.ray.dir_x[lane] = direction.x;
+  packet.ray.dir_y[lane] = direction.y;
+  packet.ray.dir_z[lane] = direction.z;
+  packet.ray.tnear[lane] = 0.0f;
+  packet.ray.tfar[lane] = INFINITY;
+  packet.ray.time[lane] = 0.0f;
+  packet.ray.mask[lane] = ~0u;
+  packet.ray.id[lane] = 0;
+  packet.ray.flags[lane] = 0;
+  packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
 }
 
 }  // namespace
@@ -167,16 +165,25 @@ void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, f
 }
 
 void TileTracer::trace_depth() {
-  hits_.clear();
-  for (const Path& path : paths_) hits_.push_back(ray_hit(path.origin, path.direction));
+  constexpr size_t kPacket = embree::kPacket;
+  hits_.resize((paths_.size() + kPacket - 1) / kPacket);
+  for (size_t i = 0; i < paths_.size(); ++i) {
+    set_lane(hits_[i / kPacket], i % kPacket, paths_[i].origin, paths_[i].direction);
+  }
   const auto begin = std::chrono::steady_clock::now();
   embree::Query query;
-  for (RTCRayHit& ray : hits_) embree::intersect1(rt_.handle(), query, ray);
+  for (size_t p = 0; p < hits_.size(); ++p) {
+    alignas(64) int valid[kPacket];
+    for (size_t lane = 0; lane < kPacket; ++lane) {
+      valid[lane] = kPacket * p + lane < paths_.size() ? -1 : 0;
+    }
+    embree::intersect(rt_.handle(), query, valid, hits_[p]);
+  }
   trace_calls_ms_ +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
   next_paths_.clear();
-  for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i]);
+  for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i / kPacket], i % kPacket);
   trace_calls_ms_ +=
       shadows_.resolve(rt_, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
         const bool reflected = task.target & 1u;
@@ -186,15 +193,17 @@ void TileTracer::trace_depth() {
   std::swap(paths_, next_paths_);
 }
 
-void TileTracer::shade_hit(const Path& path, const RTCRayHit& ray) {
+void TileTracer::shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane) {
   vec3& sum = (path.reflected ? effects_.reflection : effects_.refraction)[path.pixel];
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+  if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
     sum += path.throughput * sample_world(scene_, path.direction);
     return;
   }
   const SurfaceHit hit =
-      rt_.resolve(ray.hit.instID[0], ray.hit.geomID, ray.hit.primID, vec2(ray.hit.u, ray.hit.v));
+      rt_.resolve(packet.hit.instID[0][lane], packet.hit.geomID[lane], packet.hit.primID[lane],
+                  vec2(packet.hit.u[lane], packet.hit.v[lane]));
   Surface s = evaluate_surface(scene_, hit, rt_.normal_from_object(hit.object));
+  const float distance = packet.ray.tfar[lane];
   const bool entering = glm::dot(s.normal_geometric, path.direction) < 0.0f;
   const vec3 to_viewer = -path.direction;
   face_viewer(s, to_viewer);
@@ -204,11 +213,11 @@ void TileTracer::shade_hit(const Path& path, const RTCRayHit& ray) {
   if (path.depth >= scene_.settings.max_depth) {
     w = {1.0f, 0.0f, 0.0f};  // listing 8c: lighting stands in for what is not followed
   } else {
-    spawn(path, s, entering, ray.ray.tfar, w.reflection, w.refraction, reflectivity, transparency);
+    spawn(path, s, entering, distance, w.reflection, w.refraction, reflectivity, transparency);
   }
   if (w.surface > 0.0f) {
     sum += path.throughput * w.surface * unlit(scene_.settings, s);
-    add_lighting(path, s, to_viewer, path.throughput * w.surface, ray.ray.tfar);
+    add_lighting(path, s, to_viewer, path.throughput * w.surface, distance);
   }
 }
 

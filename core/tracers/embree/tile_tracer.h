@@ -54,7 +54,7 @@ class TileTracer {
   void trace_primary_shadows();
   void start_paths();
   void trace_depth();
-  void shade_hit(const Path& path, const RTCRayHit& ray);
+  void shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane);
   void add_lighting(const Path& path, const Surface& facing, const vec3& to_viewer,
                     const vec3& weight, float distance);
   void spawn(const Path& from, const Surface& facing, bool entering, float distance,
@@ -72,7 +72,7 @@ class TileTracer {
   std::vector<Pixel> pixels_;
   std::vector<Path> paths_;
   std::vector<Path> next_paths_;
-  std::vector<RTCRayHit> hits_;
+  std::vector<embree::RayHitPacket> hits_;
   ShadowQueue shadows_;
   RayCounts rays_;
   double trace_calls_ms_ = 0.0;
