@@ -246,6 +246,7 @@ KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path, const
     std::vector<std::vector<float>> values;
     std::vector<images::Layer> layers;
     for (const PassInfo* pass : chosen) {
+      if (std::string_view(passes) == "all" && !film.has(pass->name)) continue;
       values.push_back(film.pass(pass->name));
       layers.push_back({pass->name, pass->channels, values.back().data()});
     }

@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"
@@ -139,6 +140,12 @@ const Film::Channel& Film::find(std::string_view name) const {
   }
   fail(ErrorCode::invalid_argument,
        "The pass '{}' was not rendered. Ask for it before rendering (kestrelSetPasses).", name);
+}
+
+bool Film::has(std::string_view name) const {
+  const size_t row = find_row(name);
+  return std::any_of(passes_.begin(), passes_.end(),
+                     [row](const Channel& pass) { return pass.pass == row; });
 }
 
 size_t Film::float_count(std::string_view name) const {

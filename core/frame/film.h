@@ -35,6 +35,8 @@ class Film {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  /// Whether a pass was wanted. Throws Error(invalid_argument) where it is unknown.
+  bool has(std::string_view name) const;
   /// Number of floats of a pass. Throws Error(invalid_argument) where it is unknown or not wanted.
   size_t float_count(std::string_view name) const;
   /// Copies a pass, channels interleaved; `pixels` holds float_count() floats.

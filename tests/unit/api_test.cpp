@@ -524,6 +524,24 @@ TEST_F(Api, PassesAreListedAndUnknownOnesErrors) {
   expect_invalid({"name"});
 }
 
+TEST_F(Api, OnlyWantedPassesAreKept) {
+  set_glowing_square();
+  expect_ok(kestrelSetPasses(renderer, "Combined,Depth"));
+  expect_invalid(kestrelSetPasses(renderer, "Combined,Beauty"), {"Beauty"});
+  expect_invalid(kestrelSetPasses(renderer, nullptr), {"passes"});
+  expect_invalid(kestrelSetPasses(nullptr, "all"));
+  expect_ok(kestrelRender(renderer, 1, 1, nullptr, nullptr));
+  float values[4];
+  expect_ok(kestrelReadPass(renderer, "Combined", values, 4));
+  expect_ok(kestrelReadPass(renderer, "Depth", values, 1));
+  expect_invalid(kestrelReadPass(renderer, "Normal", values, 3), {"Normal", "kestrelSetPasses"});
+  const TemporaryFolder folder;
+  expect_ok(kestrelWriteImage(renderer, folder.file("a.exr").c_str(), "all"));
+  expect_invalid(kestrelWriteImage(renderer, folder.file("b.exr").c_str(), "Combined,Normal"),
+                 {"Normal"});
+  EXPECT_EQ(folder.file_count(), 1u);
+}
+
 TEST_F(Api, ReadingAPassChecksItsArguments) {
   set_glowing_square();
   expect_ok(kestrelRender(renderer, 2, 3, nullptr, nullptr));
