@@ -151,6 +151,12 @@ def light_factor(light):
     return factor
 
 
+def spot_exponent(version):
+    """Power of the cosine to a spot's axis with which its light falls off within the cone, in the
+    Cycles of this Blender version."""
+    return 1.0 if version < (4, 0, 0) else 0.0
+
+
 def light_casts_shadow(light):
     """Both switches count where there are two: Blender's own and Cycles'."""
     cycles = getattr(light, "cycles", None)

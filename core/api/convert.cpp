@@ -155,6 +155,7 @@ LightInput light_from(const KestrelLight& light) {
   l.direction = vec3_from(light.direction);
   l.attenuation = vec3_from(light.attenuation);
   l.blend = light.spot_blend;
+  l.exponent = light.spot_exponent;
   l.specular_factor = light.specular_factor;
   l.casts_shadow = light.casts_shadow;
   out.spot_angle = light.spot_angle;

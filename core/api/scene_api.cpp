@@ -108,6 +108,7 @@ void kestrelDefaultLight(KestrelLight* light) {
         .attenuation = {0.0f, 0.0f, 1.0f},
         .spot_angle = 0.785398163f,
         .spot_blend = 0.15f,
+        .spot_exponent = 0.0f,
         .specular_factor = 1.0f,
         .casts_shadow = true,
     };

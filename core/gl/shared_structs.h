@@ -44,12 +44,13 @@ static_assert(offsetof(GpuMaterial, tiling) == 80);
 static_assert(offsetof(GpuMaterial, offset) == 88);
 static_assert(offsetof(GpuMaterial, textures) == 96);
 
-static_assert(sizeof(GpuLight) == 64);
+static_assert(sizeof(GpuLight) == 80);
 static_assert(offsetof(GpuLight, cos_outer) == 12);
 static_assert(offsetof(GpuLight, position) == 16);
 static_assert(offsetof(GpuLight, direction) == 32);
 static_assert(offsetof(GpuLight, attenuation) == 48);
 static_assert(offsetof(GpuLight, type) == 60);
+static_assert(offsetof(GpuLight, exponent) == 64);
 
 // Values the shaders compare with.
 static_assert(static_cast<int>(AlphaMode::mask) == 1 && static_cast<int>(AlphaMode::blend) == 2);

@@ -66,6 +66,7 @@ gpu::GpuLight pack(const Light& l) {
   out.cos_outer = l.cos_outer;
   out.position = l.position;
   out.blend = l.blend;
+  out.exponent = l.exponent;
   out.direction = l.direction;
   out.specular_factor = l.specular_factor;
   out.attenuation = l.attenuation;

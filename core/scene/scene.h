@@ -91,6 +91,7 @@ struct Light {
   vec3 attenuation{0.0f, 0.0f, 1.0f};  // 1 / (x + y d + z d²), d in metres
   float cos_outer = 0.0f;              // spot: cosine of half the cone's angle
   float blend = 0.0f;                  // spot: 0 hard edge … 1 soft all the way
+  float exponent = 0.0f;               // spot: power of the cosine to the axis
   float specular_factor = 1.0f;
   bool casts_shadow = true;
 };

@@ -92,6 +92,7 @@ Light checked_light(LightInput input) {
   check.finite("attenuation", light.attenuation);
   check.finite("spot_angle", input.spot_angle);
   check.finite("spot_blend", light.blend);
+  check.finite("spot_exponent", light.exponent);
   check.finite("specular_factor", light.specular_factor);
   const vec3& a = light.attenuation;
   const bool reaches = light.type == LightType::directional ||
@@ -107,6 +108,7 @@ Light checked_light(LightInput input) {
     light.direction /= length;
   }
   check.clamp("spot_blend", light.blend, 0.0f, 1.0f);
+  check.clamp("spot_exponent", light.exponent, 0.0f, 128.0f);
   check.clamp("spot_angle", input.spot_angle, 0.0f, kPi);
   light.cos_outer = std::cos(0.5f * input.spot_angle);
   return light;

@@ -6,12 +6,15 @@
 namespace kestrel {
 namespace {
 
-/// Soft edge of a spot's cone: 0 outside, smooth over `blend` of the cone, 1 inside.
+/// A spot's cone: 0 outside, smooth over `blend` of the cone, and within it the falloff to the
+/// side.
 float spot_factor(const Light& light, const vec3& to_light) {
   const float cosine = -glm::dot(to_light, light.direction);
   if (cosine <= light.cos_outer) return 0.0f;
   const float width = (1.0f - light.cos_outer) * light.blend;
-  return width > 0.0f ? glm::smoothstep(0.0f, 1.0f, (cosine - light.cos_outer) / width) : 1.0f;
+  const float edge =
+      width > 0.0f ? glm::smoothstep(0.0f, 1.0f, (cosine - light.cos_outer) / width) : 1.0f;
+  return light.exponent > 0.0f ? edge * std::pow(glm::max(cosine, 0.0f), light.exponent) : edge;
 }
 
 vec3 blinn_phong(const Surface& s, const vec3& to_viewer, const Light& light,

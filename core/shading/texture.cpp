@@ -60,24 +60,29 @@ int floor_to_int(float x) {
   return i - (static_cast<float>(i) > x);
 }
 
+/// The lookup, with its own rule outside 0…1 for each axis.
+vec4 sample(const Texture& t, const vec2& uv, Extension across_u, Extension across_v) {
+  if (t.width <= 0 || t.height <= 0) return vec4(1.0f);
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return texel(t, 0, 0);
+  const float x = texel_coordinate(uv.x, t.width, across_u);
+  const float y = texel_coordinate(uv.y, t.height, across_v);
+  if (t.nearest) {
+    return texel(t, wrap(floor_to_int(x), t.width, across_u),
+                 wrap(floor_to_int(y), t.height, across_v));
+  }
+  const int left = floor_to_int(x - 0.5f), low = floor_to_int(y - 0.5f);
+  const float right_share = x - 0.5f - static_cast<float>(left);
+  const float high_share = y - 0.5f - static_cast<float>(low);
+  const int x0 = wrap(left, t.width, across_u), x1 = wrap(left + 1, t.width, across_u);
+  const int y0 = wrap(low, t.height, across_v), y1 = wrap(low + 1, t.height, across_v);
+  return glm::mix(glm::mix(texel(t, x0, y0), texel(t, x1, y0), right_share),
+                  glm::mix(texel(t, x0, y1), texel(t, x1, y1), right_share), high_share);
+}
+
 }  // namespace
 
 vec4 sample_texture(const Texture& t, const vec2& uv) {
-  if (t.width <= 0 || t.height <= 0) return vec4(1.0f);
-  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) return texel(t, 0, 0);
-  const float x = texel_coordinate(uv.x, t.width, t.extension);
-  const float y = texel_coordinate(uv.y, t.height, t.extension);
-  if (t.nearest) {
-    return texel(t, wrap(floor_to_int(x), t.width, t.extension),
-                 wrap(floor_to_int(y), t.height, t.extension));
-  }
-  const int left = floor_to_int(x - 0.5f), low = floor_to_int(y - 0.5f);
-  const float across = x - 0.5f - static_cast<float>(left);
-  const float up = y - 0.5f - static_cast<float>(low);
-  const int x0 = wrap(left, t.width, t.extension), x1 = wrap(left + 1, t.width, t.extension);
-  const int y0 = wrap(low, t.height, t.extension), y1 = wrap(low + 1, t.height, t.extension);
-  return glm::mix(glm::mix(texel(t, x0, y0), texel(t, x1, y0), across),
-                  glm::mix(texel(t, x0, y1), texel(t, x1, y1), across), up);
+  return sample(t, uv, t.extension, t.extension);
 }
 
 vec3 sample_world(const Scene& scene, const vec3& direction_ws) {
@@ -87,7 +92,9 @@ vec3 sample_world(const Scene& scene, const vec3& direction_ws) {
   const CubeUv at = world.kind == WorldKind::cube ? cube_uv(d) : CubeUv{0, equirectangular_uv(d)};
   const int texture = world.textures[at.face];
   if (texture == kNone) return world.color;
-  return world.color * vec3(sample_texture(*scene.textures[texture], at.uv));
+  // A panorama closes round the horizon and ends at the poles; a cube's faces end at their edges.
+  const Extension across_u = world.kind == WorldKind::cube ? Extension::clamp : Extension::repeat;
+  return world.color * vec3(sample(*scene.textures[texture], at.uv, across_u, Extension::clamp));
 }
 
 }  // namespace kestrel

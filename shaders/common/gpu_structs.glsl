@@ -59,4 +59,8 @@ struct GpuLight {
   float specular_factor;
   vec3 attenuation;
   uint type;  // LightType
+  float exponent;  // spot: power of the cosine to the axis
+  float unused_0;
+  float unused_1;
+  float unused_2;
 };

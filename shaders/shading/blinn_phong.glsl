@@ -13,11 +13,12 @@ const uint kLightDirectional = 0u;
 const uint kLightSpot = 2u;
 
 // Share of a spot's light on a ray whose angle to the axis has this cosine: smooth from the cone's
-// edge inwards over `blend` of 1 - cos_outer.
+// edge inwards over `blend` of 1 - cos_outer, and falling off to the side with a power of the cosine.
 float spot_factor(GpuLight light, float cosine) {
   if (cosine <= light.cos_outer) return 0.0;
   float width = (1.0 - light.cos_outer) * light.blend;
-  return width > 0.0 ? smoothstep(0.0, 1.0, (cosine - light.cos_outer) / width) : 1.0;
+  float edge = width > 0.0 ? smoothstep(0.0, 1.0, (cosine - light.cos_outer) / width) : 1.0;
+  return light.exponent > 0.0 ? edge * pow(max(cosine, 0.0), light.exponent) : edge;
 }
 
 // Light that arrives at a point; `to_light` gets the unit direction to where it comes from.

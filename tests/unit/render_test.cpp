@@ -358,8 +358,9 @@ TEST(Render, EveryPixelIsTracedOnce) {
   camera.top = camera.bottom + (camera.top - camera.bottom) * 32.0f / 61.0f;
   const Picture q(s, 32, 32);
   for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x)
+    for (int x = 0; x < 32; ++x) {
       expect_near(p.at(x, y, "Refraction"), q.at(x, y, "Refraction"), 1e-2f);
+    }
   }
 }
 
@@ -370,11 +371,11 @@ TEST(Render, BudgetLeavesOutWhatDoesNotFit) {
   const double full = all.stats()["stages_ms"]["trace"];
   s.scene->settings.budget_ms = static_cast<float>(0.3 * full);
   const Picture some(s, 320, 320);
+  const nlohmann::json stats = some.stats();
   size_t selected = 0;
-  for (const auto& o : some.stats()["objects"]) selected += o["selected"].get<bool>();
+  for (const auto& o : stats["objects"]) selected += o["selected"].get<bool>();
   EXPECT_GT(selected, 0u);
-  EXPECT_LT(some.stats()["rays"]["shadow"].get<uint64_t>(),
-            all.stats()["rays"]["shadow"].get<uint64_t>());
+  EXPECT_LT(stats["rays"]["shadow"].get<uint64_t>(), all.stats()["rays"]["shadow"].get<uint64_t>());
 }
 
 TEST(Render, CancelKeepsTheLastPicture) {

@@ -101,6 +101,7 @@ class Light(Structure):
         ("attenuation", c_float * 3),
         ("spot_angle", c_float),
         ("spot_blend", c_float),
+        ("spot_exponent", c_float),
         ("specular_factor", c_float),
         ("casts_shadow", c_bool),
     ]

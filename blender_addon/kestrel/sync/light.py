@@ -8,6 +8,8 @@ P / (4 pi²); an area light, far along its axis, P / (4 pi).
 
 import math
 
+import bpy
+
 from .. import compat
 from ..native import capi
 from . import nodes
@@ -61,6 +63,8 @@ def describe(light, matrix, library, warn):
         # An area light shines to one side with the cosine, which a soft half-space cone follows.
         item.spot_angle = light.spot_size if light.type == "SPOT" else math.pi
         item.spot_blend = light.spot_blend if light.type == "SPOT" else 1.0
+        exponent = compat.spot_exponent(bpy.app.version)
+        item.spot_exponent = exponent if light.type == "SPOT" else 0.0
     return item
 
 

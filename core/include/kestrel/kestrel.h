@@ -199,6 +199,8 @@ typedef struct KestrelLight {
   float attenuation[3];  /* 1 / (a + b d + c d²); {0, 0, 1} is physical */
   float spot_angle;      /* full angle of the cone, radians, 0…π */
   float spot_blend;      /* 0 hard edge … 1 soft all the way in */
+  float spot_exponent;   /* >= 0: within the cone, light falls off with this power of the cosine to
+                            its axis; 0: not at all */
   float specular_factor; /* scales highlights only */
   bool casts_shadow;
 } KestrelLight;
@@ -330,8 +332,9 @@ KESTREL_API KestrelError kestrelReadPass(KestrelRenderer renderer, const char* n
  * Valid until the next call on this thread. NULL before the first frame. */
 KESTREL_API const char* kestrelGetStats(KestrelRenderer renderer);
 
-/* Writes passes ("Combined,Depth" or "all") to `path`: .exr linear with one layer a pass, .png the
- * first of them in sRGB. The file appears whole or not at all. Needs the image plug-in. */
+/* Writes passes ("Combined,Depth", or "all" that the frame kept) to `path`: .exr linear with one
+ * layer a pass, .png the first of them in sRGB. The file appears whole or not at all. Needs the
+ * image plug-in. */
 KESTREL_API KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path,
                                            const char* passes);
 
