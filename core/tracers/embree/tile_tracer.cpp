@@ -129,13 +129,21 @@ void TileTracer::trace_primary_shadows() {
 }
 
 void TileTracer::start_paths() {
-  next_paths_.clear();
   for (const Pixel& p : pixels_) {
     const Path eye{{}, -p.to_viewer, vec3(1.0f), 1.0f, p.index, 0, false};
     spawn(eye, p.surface, p.entering, camera_.distance(p.surface.position), 1.0f, 1.0f,
           p.reflectivity, p.transparency);
   }
-  std::swap(paths_, next_paths_);
+  take_next_paths();
+}
+
+/// Reflections first, then refractions: neighbours in a packet go the same way.
+void TileTracer::take_next_paths() {
+  paths_.clear();
+  paths_.insert(paths_.end(), next_reflected_.begin(), next_reflected_.end());
+  paths_.insert(paths_.end(), next_refracted_.begin(), next_refracted_.end());
+  next_reflected_.clear();
+  next_refracted_.clear();
 }
 
 void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, float distance,
@@ -143,10 +151,11 @@ void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, f
                        float transparency) {
   const auto emit = [&](const vec3& direction, const vec3& tint, float importance, bool reflected) {
     const float side = glm::dot(direction, facing.normal_geometric) < 0.0f ? -1.0f : 1.0f;
-    next_paths_.push_back({leave_surface(facing.position, side * facing.normal_geometric, distance),
-                           direction, from.throughput * tint, importance, from.pixel,
-                           static_cast<uint8_t>(from.depth + 1),
-                           from.depth == 0 ? reflected : from.reflected});
+    (reflected ? next_reflected_ : next_refracted_)
+        .push_back({leave_surface(facing.position, side * facing.normal_geometric, distance),
+                    direction, from.throughput * tint, importance, from.pixel,
+                    static_cast<uint8_t>(from.depth + 1),
+                    from.depth == 0 ? reflected : from.reflected});
     count(unit_of(from.pixel), reflected ? rays_.reflection : rays_.refraction);
   };
   const float cutoff = scene_.settings.importance_cutoff;
@@ -182,19 +191,13 @@ void TileTracer::trace_depth() {
   trace_calls_ms_ +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
-  next_paths_.clear();
   for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i / kPacket], i % kPacket);
-  trace_calls_ms_ +=
-      shadows_.resolve(rt_, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
-        const bool reflected = task.target & 1u;
-        (reflected ? effects_.reflection : effects_.refraction)[task.target >> 1] +=
-            task.light * transmitted;
-      });
-  std::swap(paths_, next_paths_);
+  light_hits();
+  take_next_paths();
 }
 
 void TileTracer::shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane) {
-  vec3& sum = (path.reflected ? effects_.reflection : effects_.refraction)[path.pixel];
+  vec3& sum = sum_of(path.pixel, path.reflected);
   if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
     sum += path.throughput * sample_world(scene_, path.direction);
     return;
@@ -217,27 +220,35 @@ void TileTracer::shade_hit(const Path& path, const embree::RayHitPacket& packet,
   }
   if (w.surface > 0.0f) {
     sum += path.throughput * w.surface * unlit(scene_.settings, s);
-    add_lighting(path, s, to_viewer, path.throughput * w.surface, distance);
+    lit_.push_back(
+        {s, to_viewer, path.throughput * w.surface, distance, path.pixel, path.reflected});
   }
 }
 
-void TileTracer::add_lighting(const Path& path, const Surface& facing, const vec3& to_viewer,
-                              const vec3& weight, float distance) {
+/// Light for light, so that neighbours in a packet go the same way.
+void TileTracer::light_hits() {
   Incident incident;
-  const uint32_t target = path.pixel << 1 | (path.reflected ? 1u : 0u);
-  const vec3 origin = leave_surface(facing.position, facing.normal_geometric, distance);
   for (const Light& light : scene_.lights) {
-    if (!incident_light(light, facing.position, incident)) continue;
-    const vec3 light_color =
-        weight * reflect_light(scene_.settings, facing, to_viewer, light, incident);
-    if (max_component(light_color) <= 0.0f) continue;
-    if (!light.casts_shadow) {
-      (path.reflected ? effects_.reflection : effects_.refraction)[path.pixel] += light_color;
-      continue;
+    for (const Hit& h : lit_) {
+      const Surface& s = h.surface;
+      if (!incident_light(light, s.position, incident)) continue;
+      const vec3 light_color =
+          h.weight * reflect_light(scene_.settings, s, h.to_viewer, light, incident);
+      if (max_component(light_color) <= 0.0f) continue;
+      if (!light.casts_shadow) {
+        sum_of(h.pixel, h.reflected) += light_color;
+        continue;
+      }
+      shadows_.push(leave_surface(s.position, s.normal_geometric, h.distance), incident.direction,
+                    incident.distance, {light_color, h.pixel << 1 | (h.reflected ? 1u : 0u)});
+      count(unit_of(h.pixel), rays_.shadow);
     }
-    shadows_.push(origin, incident.direction, incident.distance, {light_color, target});
-    count(unit_of(path.pixel), rays_.shadow);
   }
+  lit_.clear();
+  trace_calls_ms_ +=
+      shadows_.resolve(rt_, [&](const ShadowQueue::Task& task, const vec3& transmitted) {
+        sum_of(task.target >> 1, task.target & 1u) += task.light * transmitted;
+      });
 }
 
 }  // namespace kestrel

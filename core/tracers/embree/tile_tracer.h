@@ -37,6 +37,15 @@ class TileTracer {
     uint8_t depth;     // 1: from the G-buffer
     bool reflected;    // goes to M, else to R
   };
+  /// Where a path met a surface whose own light shows.
+  struct Hit {
+    Surface surface;  // faces the viewer
+    vec3 to_viewer;
+    vec3 weight;     // of its light in the pixel's M or R
+    float distance;  // that the ray travelled, metres
+    uint32_t pixel;
+    bool reflected;
+  };
   /// A pixel of the tile that something is traced for.
   struct Pixel {
     uint32_t index;
@@ -55,11 +64,14 @@ class TileTracer {
   void start_paths();
   void trace_depth();
   void shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane);
-  void add_lighting(const Path& path, const Surface& facing, const vec3& to_viewer,
-                    const vec3& weight, float distance);
+  void light_hits();
+  void take_next_paths();
   void spawn(const Path& from, const Surface& facing, bool entering, float distance,
              float weight_reflection, float weight_refraction, float reflectivity,
              float transparency);
+  vec3& sum_of(uint32_t pixel, bool reflected) {
+    return (reflected ? effects_.reflection : effects_.refraction)[pixel];
+  }
   uint32_t unit_of(uint32_t pixel) const;
   void count(uint32_t unit, uint64_t& kind);
 
@@ -71,7 +83,9 @@ class TileTracer {
 
   std::vector<Pixel> pixels_;
   std::vector<Path> paths_;
-  std::vector<Path> next_paths_;
+  std::vector<Path> next_reflected_;
+  std::vector<Path> next_refracted_;
+  std::vector<Hit> lit_;
   std::vector<embree::RayHitPacket> hits_;
   ShadowQueue shadows_;
   RayCounts rays_;
