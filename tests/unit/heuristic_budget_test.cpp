@@ -32,7 +32,7 @@ class Simulation {
     all.settings.selection = SelectionPolicy::all;
     HeuristicStage other;
     GBuffer gbuffer = make_gbuffer(areas, kPictureWidth, kPictureHeight);
-    Selection s = other.run({all, kPictureWidth, kPictureHeight}, gbuffer);
+    Selection s = run(other, {all, kPictureWidth, kPictureHeight}, gbuffer);
     EffectBuffers effects;
     return trace(s, 1.0, effects, 0.0);
   }
@@ -47,13 +47,13 @@ class Simulation {
     GBuffer gbuffer = make_gbuffer(areas, kPictureWidth, kPictureHeight);
     const FrameInputs inputs{scene, kPictureWidth, kPictureHeight, vec2(0.0f),
                              scene.settings.budget_ms};
-    Selection s = stage.run(inputs, gbuffer);
+    Selection s = run(stage, inputs, gbuffer);
     EffectBuffers effects;
     if (inputs.budget_ms > 0.0f && !stage.calibrated()) {
       ++probes;
       const double probe_ms = trace(s, 1.0 / 256.0, effects, noise_);
       stage.learn(inputs, s, effects, probe_ms, 1.0 / 256.0);
-      s = stage.run(inputs, gbuffer);
+      s = run(stage, inputs, gbuffer);
     }
     const double ms = trace(s, 1.0, effects, noise_);
     const double predicted = total_cost(s);

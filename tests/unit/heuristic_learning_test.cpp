@@ -35,11 +35,11 @@ TEST(Heuristic, AProbesFewPixelsDoNotDecideAUnitsCost) {
   HeuristicStage stage;
   GBuffer gbuffer = make_gbuffer({300, 512000}, 1024, 512);
   const FrameInputs inputs{scene, 1024, 512, vec2(0.0f), 20.0f};
-  Selection s = stage.run(inputs, gbuffer);
+  Selection s = run(stage, inputs, gbuffer);
   EffectBuffers effects;
   effects.rays_by_unit = {0, 4000};  // the small one was missed, the large one needs twice Q
   stage.learn(inputs, s, effects, 1.0, 1.0 / 256.0);
-  s = stage.run(inputs, gbuffer);
+  s = run(stage, inputs, gbuffer);
   EXPECT_GT(s.units[0].estimated_cost, 0.5f);
   EXPECT_NEAR(s.units[1].estimated_cost, 2.0f, 0.01f);
 }
