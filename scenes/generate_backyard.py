@@ -24,8 +24,8 @@ HOUSE = (-3.0, 9.0, 3.6, 9.6)
 TERRACE = (-3.6, 9.6, 0.6, 3.6)
 POOL = (-8.9, -4.1, -3.2, 1.2)
 BALLS = [(-2.2, -3.9, 0.95, 0.95), (-3.9, -5.9, 0.55, 0.55)]  # mirror, glass
-FEATURE_TREES = [("tree-01-1", -10.4, 6.6, 30, 1.0), ("tree-02-2", -6.4, 9.0, 200, 0.85),
-                 ("tree-03-1", 11.2, -2.6, 75, 0.9), ("tree-01-3", 8.6, -8.2, 310, 0.8)]
+FEATURE_TREES = [("tree-01-1", -5.6, 2.5, 30, 0.85), ("tree-02-2", -7.6, -11.2, 200, 0.85),
+                 ("tree-03-1", 10.6, -0.8, 75, 0.9), ("tree-01-3", 4.2, -6.4, 310, 0.75)]
 
 
 class Yard:
@@ -46,8 +46,11 @@ class Yard:
     def plants(self, name, kind, instances):
         """One object of many plants of a kind; instances are x, y, z, degrees, scale."""
         self.triangles += len(instances) * self.size_of(kind)
-        return {"name": name, "import": f"{kscene.DATA}/plants/{kind}.obj", "up": "y", "join": True,
-                "instances": instances}
+        out = {"name": name, "import": f"{kscene.DATA}/plants/{kind}.obj", "up": "y", "join": True}
+        if kind.startswith("grass"):  # the images are of dry grass
+            out["replace"] = [{"material": f"grass-0{i}-material", "with": f"Grass{i}"}
+                              for i in (1, 2)]
+        return {**out, "instances": instances}
 
     def instance(self, x, y, low, high, z=0.0):
         return (round(x, 3), round(y, 3), z, round(self.draw.uniform(0, 360), 1),
@@ -125,7 +128,7 @@ def vegetation(yard):
                                    yard.lawn(260, 0.5, 0.9, 0.01)))
     for number in (1, 2):
         objects.append(yard.plants(f"Grass {number}", f"grass-{number:02}",
-                                   yard.lawn(5200, 0.16, 0.34)))
+                                   yard.lawn(5200, 0.12, 0.26)))
     return objects
 
 
@@ -133,7 +136,7 @@ def fill_with_grass(yard):
     count = round((TRIANGLES - yard.triangles) / yard.size_of("grass-03"))
     if not 1000 <= count <= 20000:
         raise SystemExit(f"{count} tufts of grass would be needed; change the number of trees")
-    return yard.plants("Grass 3", "grass-03", yard.lawn(count, 0.16, 0.34))
+    return yard.plants("Grass 3", "grass-03", yard.lawn(count, 0.12, 0.26))
 
 
 def box(x0, x1, y0, y1, z0, z1):
@@ -193,7 +196,7 @@ def buildings(yard):
 
 
 MATERIALS = [
-    {"name": "Soil", "diffuse": (0.10, 0.13, 0.045)},
+    {"name": "Soil", "diffuse": (0.07, 0.12, 0.03)},
     {"name": "Terrace", "diffuse": (1, 1, 1), "diffuse_texture": "slabs"},
     {"name": "Plaster", "diffuse": (0.62, 0.57, 0.48)},
     {"name": "Tiles", "diffuse": (1, 1, 1), "diffuse_texture": "tiles"},
@@ -202,11 +205,15 @@ MATERIALS = [
     {"name": "Pane", "diffuse": (0.03, 0.05, 0.07), "specular": (0.6, 0.6, 0.6, 0.5)},
     {"name": "Mosaic", "diffuse": (1, 1, 1), "diffuse_texture": "mosaic"},
     {"name": "Stone", "diffuse": (0.5, 0.47, 0.42)},
+    *({"name": f"Grass{i}", "diffuse": (0.42, 0.72, 0.26), "diffuse_texture": f"grass-0{i}",
+       "alpha_mode": "mask"} for i in (1, 2)),
     kscene.glass("Water", (0.75, 0.93, 0.95), 1.33),
     kscene.mirror("Mirror"),
     kscene.glass("Glass", (1, 1, 1), 1.5),
 ]
 TEXTURES = [
+    *({"name": f"grass-0{i}", "file": f"{kscene.DATA}/plants/textures/grass-0{i}.png"}
+      for i in (1, 2)),
     {"name": "slabs", "checker": {"squares": 8, "texels": 16,
                                   "colors": ((0.46, 0.42, 0.36), (0.36, 0.33, 0.29))}},
     {"name": "tiles", "checker": {"squares": 24, "texels": 4,

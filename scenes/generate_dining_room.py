@@ -152,10 +152,10 @@ def main():
         "description": "The paper's third test scene, from Benedikt Bitterli's dining room (see its "
                        "LICENSE.txt in the scene data). 27 objects, 139 k triangles.",
         "camera": camera(root),
-        "settings": {"ambient": (0.10, 0.11, 0.13)},
+        "settings": {"ambient": (0.16, 0.17, 0.20)},
         "world": {"color": (0.75, 0.85, 1), "strength": 1.1},
-        "lights": [kscene.sun("Sun", (-1.0, 0.28, -0.52), 2.2, (1, 0.93, 0.82)),
-                   kscene.point("TableLight", (-0.6, -2.2, 5.4), 9.0, (1, 0.82, 0.62))],
+        "lights": [kscene.sun("Sun", (-1.0, 0.28, -0.52), 2.6, (1, 0.93, 0.82)),
+                   kscene.point("TableLight", (-0.6, -2.2, 5.4), 16.0, (1, 0.82, 0.62))],
         "textures": textures,
         "materials": materials,
         "meshes": [mesh for mesh, _, _ in shapes],

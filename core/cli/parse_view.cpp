@@ -138,7 +138,7 @@ std::vector<std::string> light_keys(int type) {
       "name", "type", "color", "intensity", "specular_factor", "casts_shadow", "position"};
   if (type != KESTREL_LIGHT_DIRECTIONAL) keys.push_back("attenuation");
   if (type != KESTREL_LIGHT_POINT) keys.insert(keys.end(), {"direction", "target"});
-  if (type == KESTREL_LIGHT_SPOT) keys.insert(keys.end(), {"spot_angle", "blend"});
+  if (type == KESTREL_LIGHT_SPOT) keys.insert(keys.end(), {"spot_angle", "blend", "exponent"});
   return keys;
 }
 
@@ -231,6 +231,7 @@ LightDescription parse_light(const JsonNode& node, size_t index) {
   }
   if (const auto n = node.find("spot_angle")) v.spot_angle = glm::radians(n->number(0.01, 180.0));
   if (const auto n = node.find("blend")) v.spot_blend = n->number(0.0, 1.0);
+  if (const auto n = node.find("exponent")) v.spot_exponent = n->number(0.0, 1000.0);
   if (const auto n = node.find("specular_factor")) v.specular_factor = n->number(0.0, 1e6);
   if (const auto n = node.find("casts_shadow")) v.casts_shadow = n->boolean();
   return light;

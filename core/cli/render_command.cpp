@@ -134,6 +134,7 @@ nlohmann::ordered_json render_frames(const RenderOptions& options, const Size& s
                                      Interrupt& interrupt) {
   const auto renderer = owned<RendererPtr>(kestrelNewRenderer(scene));
   check(kestrelSetPasses(renderer.get(), options.passes.c_str()));
+  check(kestrelSetPasses(renderer.get(), options.passes.c_str()));
   ProgressLine line(options.frames);
   Progress progress{&line, &interrupt};
   const bool moves = options.frames > 1 && !description.camera.path.empty();

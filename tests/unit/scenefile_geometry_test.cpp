@@ -246,6 +246,40 @@ TEST_F(SceneFiles, ImportTakesMaterialsMasksAndUnits) {
   EXPECT_NEAR(highest, 2.0f, 1e-5f);
 }
 
+TEST_F(SceneFiles, JoinedImportsAreOneObjectForEachUnit) {
+  write("two.obj", kTwoMaterialObj);
+  write("two.mtl", kTwoMaterialMtl);
+  const std::string import = R"("objects": [{"import": "two.obj", "name": "Bush", "up": "y",
+    "position": [0, 0, 1], "instances": [[0, 0, 0], [5, 0, 0, 90, 2]])";
+  const auto apart = read(import + "}]", scene_path());
+  const auto scene = read(import + R"(, "join": true}])", scene_path());
+  ASSERT_EQ(scene.objects.size(), 1u);
+  const ObjectDescription& bush = scene.objects[0];
+  const MeshDescription& mesh = scene.meshes[bush.mesh];
+  EXPECT_EQ(bush.name, "Bush");
+  ASSERT_EQ(mesh.triangles.size(), 6u);
+  ASSERT_EQ(bush.materials.size(), 2u);
+  EXPECT_EQ(std::set<uint32_t>(mesh.triangle_slots.begin(), mesh.triangle_slots.end()),
+            (std::set<uint32_t>{0, 1}));
+  // Every triangle corner stands where the instances put it, with the same image coordinates.
+  std::multiset<std::vector<float>> expected, found;
+  const auto add = [](const SceneDescription& from, const ObjectDescription& object, auto& to) {
+    const MeshDescription& m = from.meshes[object.mesh];
+    for (size_t c = 0; c < m.triangles.size() * 3; ++c) {
+      const vec3 p = placed(object, m.positions[m.triangles[c / 3][c % 3]]);
+      const vec2 uv = m.corner_uvs[c];
+      const uint32_t slot = m.triangle_slots.empty() ? 0 : m.triangle_slots[c / 3];
+      std::vector<float> row = {p.x, p.y, p.z, uv.x, uv.y};
+      for (float& v : row) v = std::round(v * 1e4f) / 1e4f + 0.0f;
+      row.push_back(from.materials[object.materials[slot]].values.diffuse[1]);
+      to.insert(row);
+    }
+  };
+  for (const ObjectDescription& object : apart.objects) add(apart, object, expected);
+  add(scene, bush, found);
+  EXPECT_EQ(found, expected);
+}
+
 /// One triangle (a file buffer of floats) below two nodes, one of which is moved and scaled.
 constexpr const char* kGltf =
     R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
