@@ -25,7 +25,7 @@ namespace {
 
 /// A frame that needs no budget is made in bands of about this many pixels: they stay in the
 /// processor's cache, and no plane of the whole picture is needed but the passes.
-constexpr int kBandPixels = 1 << 17;
+constexpr int kBandPixels = 1 << 16;
 constexpr int kBandRows = 32;  // bands have a multiple of this many rows, so that tiles are whole
 
 /// How often progress is reported.

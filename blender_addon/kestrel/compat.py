@@ -106,7 +106,8 @@ def write_passes(layer, pixels_of):
             item.rect.foreach_set(values)  # 4.1 on
     except (AttributeError, TypeError, RuntimeError):
         # One call for all passes of the layer, in its order: assigning one by one takes seconds.
-        layer.passes.foreach_set("rect", np.concatenate(pixels))
+        whole = pixels[0] if len(pixels) == 1 else np.concatenate(pixels)
+        layer.passes.foreach_set("rect", whole)
 
 
 # ---- materials, lights -----------------------------------------------------------------------

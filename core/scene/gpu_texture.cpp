@@ -24,8 +24,8 @@ vec4 load_texel(const Texture& t, size_t index) {
     const float* p = &t.texels_float[4 * index];
     return {p[0], p[1], p[2], p[3]};
   }
-  const uint8_t* p = &t.texels8[4 * index];
-  vec4 c = vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  const uint8_t* p = &t.texels8[static_cast<size_t>(t.channels8) * index];
+  vec4 c = vec4(p[0], p[1], p[2], t.channels8 == 4 ? p[3] : 255) / 255.0f;
   if (t.srgb) {
     for (int k = 0; k < 3; ++k) c[k] = linear_from_srgb(c[k]);
   }
@@ -116,7 +116,7 @@ gl::Texture2D upload_texture(const Texture& texture) {
   }
   gl::Texture2D out(texture.name, texture_format(texture), texture.width, texture.height);
   if (texture.texels_float.empty()) {
-    out.upload(GL_RGBA, GL_UNSIGNED_BYTE, texture.texels8.data());
+    out.upload(texture.channels8 == 4 ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, texture.texels8.data());
   } else {
     out.upload(GL_RGBA, GL_FLOAT, texture.texels_float.data());
   }

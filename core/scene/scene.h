@@ -37,7 +37,8 @@ struct Texture {
   bool srgb = false;     // 8-bit RGB is sRGB-encoded and decoded before filtering; alpha is linear
   bool nearest = false;  // no interpolation
   Extension extension = Extension::repeat;
-  std::vector<uint8_t> texels8;     // RGBA, straight alpha
+  int channels8 = 4;                // 3 where every texel is opaque, so that it needs less memory
+  std::vector<uint8_t> texels8;     // RGB or RGBA, straight alpha
   std::vector<float> texels_float;  // RGBA, linear
 };
 

@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for_each.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -35,6 +36,19 @@ void replace_infinite(Texture& texture) {
     log::warning_once("Texture '{}': {} values that are not finite were replaced.", texture.name,
                       count);
   }
+}
+
+/// Leaves alpha out where every texel is opaque.
+void drop_opaque_alpha(Texture& t) {
+  const size_t count = t.texels8.size() / 4;
+  if (t.channels8 != 4 || count == 0) return;
+  for (size_t i = 0; i < count; ++i) {
+    if (t.texels8[4 * i + 3] != 255) return;
+  }
+  std::vector<uint8_t> rgb(3 * count);
+  for (size_t i = 0; i < count; ++i) std::copy_n(&t.texels8[4 * i], 3, &rgb[3 * i]);
+  t.texels8 = std::move(rgb);
+  t.channels8 = 3;
 }
 
 }  // namespace
@@ -113,6 +127,7 @@ void TextureStore::run(Job& job) {
       images::read_memory(bytes.data(), bytes.size(), *texture);
     }
     replace_infinite(*texture);
+    drop_opaque_alpha(*texture);
   } catch (const Error& error) {
     job.failure = error.what();
     images::fill_missing(*texture);

@@ -36,16 +36,17 @@ int wrap(int i, int n, Extension extension) {
 }
 
 vec4 linear8(const Texture& t, const uint8_t* p) {
-  if (!t.srgb) return vec4(p[0], p[1], p[2], p[3]) * kFromByte;
+  const float alpha = t.channels8 == 4 ? p[3] * kFromByte : 1.0f;
+  if (!t.srgb) return {p[0] * kFromByte, p[1] * kFromByte, p[2] * kFromByte, alpha};
   static const std::array<float, 256>& linear = srgb_to_linear();
-  return {linear[p[0]], linear[p[1]], linear[p[2]], p[3] * kFromByte};
+  return {linear[p[0]], linear[p[1]], linear[p[2]], alpha};
 }
 
 vec4 texel(const Texture& t, int x, int y) {
   if (x < 0 || y < 0) return vec4(0.0f);
-  const size_t i = 4 * (static_cast<size_t>(y) * static_cast<size_t>(t.width) + x);
-  if (t.texels_float.empty()) return linear8(t, &t.texels8[i]);
-  const float* p = &t.texels_float[i];
+  const size_t i = static_cast<size_t>(y) * static_cast<size_t>(t.width) + x;
+  if (t.texels_float.empty()) return linear8(t, &t.texels8[static_cast<size_t>(t.channels8) * i]);
+  const float* p = &t.texels_float[4 * i];
   return {p[0], p[1], p[2], p[3]};
 }
 

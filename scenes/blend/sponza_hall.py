@@ -111,14 +111,11 @@ def drape(index):
 # ---- light -----------------------------------------------------------------------------------
 
 def add_hall_lights():
-    """Late morning sun through the open roof, four lamps under the galleries and two spots."""
+    """Late morning sun through the open roof, a lamp under the gallery and two spots."""
     # Faint, because ambient light reaches every corner in Kestrel: nothing occludes it.
     common.set_world((0.46, 0.55, 0.72), 0.3)
     common.add_sun("Sun", (-0.32, 0.10, -1.0), 6.0, (1.0, 0.93, 0.82))
-    warm = (1.0, 0.72, 0.45)
-    for index, x in enumerate((8.0, 0.5, -7.0, -14.5)):
-        side = 1 if index % 2 else -1
-        common.add_point(f"Lamp{index + 1}", (x, NAVE_Y + side * 1.9, FLOOR_Z + 4.4), 700.0, warm)
+    common.add_point("Lamp", (-4.0, NAVE_Y - 1.9, FLOOR_Z + 4.4), 1400.0, (1.0, 0.72, 0.45))
     common.add_spot("SpotWarm", (13.5, NAVE_Y + 2.4, FLOOR_Z + 4.6),
                     (5.0, NAVE_Y - 0.6, FLOOR_Z), 3200.0, 50.0, 0.15, (1.0, 0.85, 0.65))
     common.add_spot("SpotCool", (4.0, NAVE_Y - 2.2, FLOOR_Z + 5.0),

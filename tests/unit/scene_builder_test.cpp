@@ -746,7 +746,7 @@ TEST(Textures, AFileIsDecodedOnceUnderAllItsIds) {
   EXPECT_EQ(scene->textures.size(), 2u) << "one for each way to read it";
   EXPECT_EQ(scene->materials[1].diffuse_texture, scene->materials[2].diffuse_texture);
   EXPECT_NE(scene->materials[1].diffuse_texture, scene->materials[3].diffuse_texture);
-  EXPECT_EQ(scene->textures[0]->texels8, (std::vector<uint8_t>{50, 50, 50, 255}));
+  EXPECT_EQ(scene->textures[0]->texels8, (std::vector<uint8_t>{50, 50, 50})) << "opaque: no alpha";
 }
 
 TEST(Textures, AFileSetAgainIsReadAgainOnlyWhenItChanged) {
@@ -818,6 +818,7 @@ TEST(Textures, FromMemoryEqualThoseFromFiles) {
   const auto scene = builder.commit();
   ASSERT_EQ(scene->textures.size(), 2u);
   EXPECT_EQ(scene->textures[0]->texels8, scene->textures[1]->texels8);
+  EXPECT_EQ(scene->textures[0]->channels8, 4) << "not opaque: with alpha";
 }
 
 TEST(Textures, FloatsThatAreNotFiniteAreReplaced) {
