@@ -12,9 +12,11 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "cli/model_material.h"
+#include "cli/ply_file.h"
 
 namespace kestrel::cli {
 namespace {
@@ -39,18 +41,6 @@ void expect_known_format(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::file_size(path, ignored) > kMaximumModelBytes) {
     throw std::runtime_error(fmt::format("'{}' is larger than 4 GiB", path));
-  }
-}
-
-/// assimp's PLY reader never returns from a file that ends inside its header.
-void expect_whole_ply_header(const std::string& path) {
-  constexpr size_t kLongestHeader = 65536;
-  std::ifstream stream(path, std::ios::binary);
-  std::string header(kLongestHeader, '\0');
-  stream.read(header.data(), static_cast<std::streamsize>(header.size()));
-  header.resize(static_cast<size_t>(stream.gcount()));
-  if (header.find("end_header") == std::string::npos) {
-    throw std::runtime_error(fmt::format("'{}' cannot be read: its PLY header has no end", path));
   }
 }
 
@@ -126,6 +116,33 @@ void append(const MeshDescription& mesh, const mat4x3& m, uint32_t slot, MeshDes
   out.triangle_slots.resize(out.triangles.size(), slot);
 }
 
+mat4 z_up_from_file(UpAxis up) {
+  return up == UpAxis::z ? mat4(1.0f) : mat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+}
+
+/// One mesh and one node, with the default grey.
+Model read_ply_model(const std::string& path, UpAxis up) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  Model model;
+  try {
+    model.meshes.push_back(read_ply(text.str()));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("'{}' cannot be read: {}", path, error.what()));
+  }
+  if (model.meshes[0].triangles.empty()) {
+    throw std::runtime_error(fmt::format("'{}' holds no triangles", path));
+  }
+  MaterialDescription grey{"Default", {}};
+  kestrelDefaultMaterial(&grey.values);
+  model.materials.push_back(std::move(grey));
+  model.mesh_materials = {0};
+  model.nodes.push_back(
+      {std::filesystem::path(path).stem().string(), 0, mat4x3(z_up_from_file(up))});
+  return model;
+}
+
 const aiScene& import_file(Assimp::Importer& importer, const std::string& path) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -148,7 +165,7 @@ const aiScene& import_file(Assimp::Importer& importer, const std::string& path) 
 
 Model read_model(const std::string& path, UpAxis up) {
   expect_known_format(path);
-  if (lower_extension(path) == ".ply") expect_whole_ply_header(path);
+  if (lower_extension(path) == ".ply") return read_ply_model(path, up);
   Assimp::Importer importer;
   const aiScene& scene = import_file(importer, path);
   Model model;
@@ -162,10 +179,9 @@ Model read_model(const std::string& path, UpAxis up) {
   }
   read_model_materials(scene, std::filesystem::path(path).parent_path().string(), model);
   const std::string extension = lower_extension(path);
-  const bool y_up = up == UpAxis::y || extension == ".gltf" || extension == ".glb";
-  mat4 z_up_from_file(1.0f);
-  if (y_up) z_up_from_file = mat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
-  read_nodes(*scene.mRootNode, aiMatrix4x4(), z_up_from_file, mesh_indices, 0, model);
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  read_nodes(*scene.mRootNode, aiMatrix4x4(), z_up_from_file(is_gltf ? UpAxis::y : up),
+             mesh_indices, 0, model);
   if (model.nodes.empty()) {
     throw std::runtime_error(fmt::format("'{}' holds no triangles", path));
   }

@@ -2,20 +2,23 @@
 #include "cli/primitives.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace kestrel::cli {
 namespace {
 
 /// For each vertex the first of those at the same place.
 std::vector<uint32_t> first_at_same_place(const std::vector<vec3>& positions) {
+  // By their bits, which orders positions that are no numbers too; + 0 makes -0 and 0 equal.
+  const auto key = [&](uint32_t i) {
+    return std::bit_cast<std::array<uint32_t, 3>>(positions[i] + vec3(0.0f));
+  };
   const auto less = [&](uint32_t a, uint32_t b) {
-    const vec3 &p = positions[a], &q = positions[b];
-    if (p.x != q.x) return p.x < q.x;
-    if (p.y != q.y) return p.y < q.y;
-    if (p.z != q.z) return p.z < q.z;
-    return a < b;
+    return std::make_pair(key(a), a) < std::make_pair(key(b), b);
   };
   std::vector<uint32_t> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0u);

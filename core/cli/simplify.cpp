@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <queue>
 #include <unordered_map>
@@ -187,7 +188,7 @@ class Simplifier {
       Quadric sum = quadrics_[v];
       sum.add(quadrics_[neighbour]);
       const Collapse c{sum.at(dvec3(mesh_.positions[neighbour])), v, neighbour, versions_[v]};
-      if (tried && !(c < *tried)) continue;
+      if (!std::isfinite(c.error) || (tried && !(c < *tried))) continue;
       if (!best || *best < c) best = c;
     }
     if (best) queue_.push(*best);

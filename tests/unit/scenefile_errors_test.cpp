@@ -227,6 +227,16 @@ TEST_F(SceneFiles, BrokenModelFilesAreErrorsThatNameThem) {
       {"buffer.gltf",
        R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "gone.bin", "byteLength": 36}]})"},
       {"short.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"},
+      {"count.ply",
+       "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty "
+       "float y\nproperty float z\nend_header\n1 2 3\n"},
+      {"face.ply",
+       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+       "end_header\n1 2 3\n3 0 0 1\n"},
+      {"list.ply",
+       "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+       "vertex_indices\nend_header\n-3 0 0 0\n"},
       {"picture.png", "x"},
       {"noextension", "x"},
   };

@@ -106,6 +106,48 @@ TEST_F(SceneFiles, YUpModelsAreStoodUpright) {
   EXPECT_NEAR(highest(scene.meshes[1]), 0.0f, 1e-5f);
 }
 
+template <typename T>
+std::string big_endian(T value) {
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  return {bytes.rbegin(), bytes.rend()};
+}
+
+TEST_F(SceneFiles, PlyIsReadInAllItsFormats) {
+  const std::string header =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "property uchar red\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const float corners[4][3] = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, -1.5f}};
+  std::string ascii, little, big;
+  for (const auto& corner : corners) {
+    for (const float v : corner) {
+      ascii += fmt::format("{} ", v);
+      little.append(reinterpret_cast<const char*>(&v), 4);
+      big += big_endian(v);
+    }
+    ascii += "7\n";
+    little += '\7';
+    big += '\7';
+  }
+  ascii += "4 0 1 2 3\n";
+  little += '\4';
+  big += '\4';
+  for (const int32_t i : {0, 1, 2, 3}) {
+    little.append(reinterpret_cast<const char*>(&i), 4);
+    big += big_endian(i);
+  }
+  write("a.ply", "ply\nformat ascii 1.0\ncomment made by hand\n" + header + ascii);
+  write("l.ply", "ply\nformat binary_little_endian 1.0\n" + header + little);
+  write("b.ply", "ply\r\nformat binary_big_endian 1.0\n" + header + big);
+  for (const char* name : {"a.ply", "l.ply", "b.ply"}) {
+    const auto scene =
+        read(fmt::format(R"("meshes": [{{"name": "m", "file": "{}"}}])", name), scene_path());
+    const MeshDescription& mesh = scene.meshes[0];
+    EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}})) << name;
+    ASSERT_EQ(mesh.positions.size(), 4u) << name;
+    EXPECT_EQ(mesh.positions[3], vec3(0, 3, -1.5f)) << name;
+  }
+}
+
 TEST_F(SceneFiles, NormalsCanBeSmoothedAcrossAnEdge) {
   // A roof of two faces: smoothed, the ridge's normals point straight up.
   write("roof.obj", "v -1 0 0\nv 0 0 1\nv 0 2 1\nv 1 0 0\nf 1 2 3\nf 2 4 3\n");
