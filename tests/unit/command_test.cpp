@@ -66,8 +66,8 @@ Picture read_picture(const fs::path& path) {
 class Command : public testing::Test {
  protected:
   Command() {
-    char name[] = "/tmp/kestrel-command-XXXXXX";
-    folder_ = mkdtemp(name);
+    std::string name = (fs::temp_directory_path() / "kestrel-command-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
     std::ofstream(folder_ / "cards.kscene") << kCards;
   }
   ~Command() override { fs::remove_all(folder_); }

@@ -45,8 +45,8 @@ inline vec3 placed(const ObjectDescription& object, const vec3& p) {
 class SceneFiles : public testing::Test {
  protected:
   SceneFiles() {
-    char name[] = "/tmp/kestrel-scenefile-XXXXXX";
-    folder_ = mkdtemp(name);
+    std::string name = (fs::temp_directory_path() / "kestrel-scenefile-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
   }
   ~SceneFiles() override { fs::remove_all(folder_); }
 
