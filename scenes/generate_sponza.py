@@ -49,12 +49,9 @@ def hall():
 
 
 def hall_lights():
-    """Late morning sun through the open roof, four lamps under the galleries and two spots."""
-    warm = (1, 0.72, 0.45)
-    lamps = [kscene.point(f"Lamp{i + 1}", (x, NAVE_Y + (1.9 if i % 2 else -1.9), FLOOR_Z + 4.4), 5.0,
-                          warm)
-             for i, x in enumerate((8.0, 0.5, -7.0, -14.5))]
-    return [kscene.sun("Sun", (-0.32, 0.10, -1.0), 2.2, (1, 0.93, 0.82)), *lamps,
+    """Late morning sun through the open roof, a lamp under the gallery and two spots."""
+    return [kscene.sun("Sun", (-0.32, 0.10, -1.0), 2.2, (1, 0.93, 0.82)),
+            kscene.point("Lamp", (-4.0, NAVE_Y - 1.9, FLOOR_Z + 4.4), 10.0, (1, 0.72, 0.45)),
             kscene.spot("SpotWarm", (13.5, NAVE_Y + 2.4, FLOOR_Z + 4.6),
                         (5.0, NAVE_Y - 0.6, FLOOR_Z), 32.0, 50, color=(1, 0.85, 0.65)),
             kscene.spot("SpotCool", (4.0, NAVE_Y - 2.2, FLOOR_Z + 5.0),
