@@ -292,6 +292,7 @@ void Renderer::Impl::finish() {
   heuristic.learn(inputs, stats.selection, totals, stats.stages.trace, stats.samples);
   stats.rays += totals.rays;
   stats.trace_calls_ms = totals.trace_calls_ms;
+  film.finish();
   finished = std::move(film);
   stats_json = to_json(stats, *scene);
   log::info(

@@ -222,7 +222,16 @@ KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* 
            "Pass '{}' has {} x {} pixels with {} channels: {} floats, not {}.", name, film.width(),
            film.height(), channels, expected, float_count);
     }
-    film.read(pass.name, pixels);
+    std::copy_n(film.data(pass.name), expected, pixels);
+  });
+}
+
+const float* kestrelGetPassPixels(KestrelRenderer renderer, const char* name) {
+  return guarded_or(static_cast<const float*>(nullptr), [&] {
+    const auto state = renderers().get(renderer);
+    const PassInfo& pass = find_pass(require(name, "name"));
+    const ReadScope frame(*state);
+    return frame.film().data(pass.name);
   });
 }
 
@@ -243,12 +252,10 @@ KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path, const
     const auto chosen = parse_passes(require(passes, "passes"));
     const ReadScope frame(*state);
     const Film& film = frame.film();
-    std::vector<std::vector<float>> values;
     std::vector<images::Layer> layers;
     for (const PassInfo* pass : chosen) {
       if (std::string_view(passes) == "all" && !film.has(pass->name)) continue;
-      values.push_back(film.pass(pass->name));
-      layers.push_back({pass->name, pass->channels, values.back().data()});
+      layers.push_back({pass->name, pass->channels, film.data(pass->name)});
     }
     images::write_file(path, film.width(), film.height(), layers);
   });

@@ -152,17 +152,18 @@ size_t Film::float_count(std::string_view name) const {
   return find(name).sums.size();
 }
 
-void Film::read(std::string_view name, float* pixels) const {
-  const Channel& pass = find(name);
-  const bool averaged = pass_rows()[pass.pass].averaged && samples_ > 1;
-  const float scale = averaged ? 1.0f / static_cast<float>(samples_) : 1.0f;
-  for (size_t i = 0; i < pass.sums.size(); ++i) pixels[i] = pass.sums[i] * scale;
+void Film::finish() {
+  if (samples_ < 2) return;
+  const float scale = 1.0f / static_cast<float>(samples_);
+  for (Channel& pass : passes_) {
+    if (!pass_rows()[pass.pass].averaged) continue;
+    for (float& value : pass.sums) value *= scale;
+  }
 }
 
 std::vector<float> Film::pass(std::string_view name) const {
-  std::vector<float> pixels(float_count(name));
-  read(name, pixels.data());
-  return pixels;
+  const float* first = data(name);
+  return std::vector<float>(first, first + float_count(name));
 }
 
 }  // namespace kestrel

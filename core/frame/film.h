@@ -32,6 +32,9 @@ class Film {
   void add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
            const EffectBuffers& effects, const Plane<vec4>& combined);
 
+  /// Turns the sums into averages, after the last sample.
+  void finish();
+
   int width() const { return width_; }
   int height() const { return height_; }
 
@@ -39,8 +42,8 @@ class Film {
   bool has(std::string_view name) const;
   /// Number of floats of a pass. Throws Error(invalid_argument) where it is unknown or not wanted.
   size_t float_count(std::string_view name) const;
-  /// Copies a pass, channels interleaved; `pixels` holds float_count() floats.
-  void read(std::string_view name, float* pixels) const;
+  /// A pass, channels interleaved: float_count() floats, as long as the film lives.
+  const float* data(std::string_view name) const { return find(name).sums.data(); }
   std::vector<float> pass(std::string_view name) const;
 
  private:

@@ -256,6 +256,8 @@ TEST_F(Api, NullHandlesAreErrors) {
   expect_invalid();
   float pixel[4];
   expect_invalid(kestrelReadPass(nullptr, "Combined", pixel, 4));
+  EXPECT_EQ(kestrelGetPassPixels(nullptr, "Combined"), nullptr);
+  expect_invalid();
   EXPECT_EQ(kestrelGetStats(nullptr), nullptr);
   expect_invalid();
   expect_invalid(kestrelWriteImage(nullptr, "a.exr", "all"));
@@ -446,6 +448,11 @@ TEST_F(Api, RendersTheCommittedScene) {
   EXPECT_EQ(height, 6);
   std::vector<float> pixels(8 * 6 * 4);
   expect_ok(kestrelReadPass(renderer, "Combined", pixels.data(), pixels.size()));
+  const float* direct = kestrelGetPassPixels(renderer, "Combined");
+  ASSERT_NE(direct, nullptr);
+  EXPECT_TRUE(std::equal(pixels.begin(), pixels.end(), direct));
+  EXPECT_EQ(kestrelGetPassPixels(renderer, "Beauty"), nullptr);
+  expect_invalid({"Beauty"});
   for (size_t i = 0; i < pixels.size(); i += 4) {
     EXPECT_FLOAT_EQ(pixels[i], 0.25f);
     EXPECT_FLOAT_EQ(pixels[i + 1], 0.5f);

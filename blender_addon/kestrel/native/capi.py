@@ -186,7 +186,7 @@ FUNCTIONS = {
     "kestrelGetPassName": (c_char_p, [c_void_p, c_size_t]),
     "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
     "kestrelSetPasses": (c_int, [c_void_p, c_char_p]),
-    "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
+    "kestrelGetPassPixels": (float_p, [c_void_p, c_char_p]),
     "kestrelGetStats": (c_char_p, [c_void_p]),
     "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
 }
@@ -422,14 +422,19 @@ class Renderer:
         self.library.check(self.c.kestrelSetPasses(self.handle, encode(",".join(names))))
 
     def read_pass(self, name, width, height):
-        """float32 (height * width, channels), row 0 at the bottom."""
+        """float32 (height * width, channels), row 0 at the bottom: the library's own memory, which
+        stays as it is until the next render."""
         channels = self.c.kestrelGetPassChannels(self.handle, encode(name))
         if channels is None:
             raise self.library.last_error()
-        pixels = np.empty((height * width, len(channels)), np.float32)
-        self.library.check(self.c.kestrelReadPass(
-            self.handle, encode(name), pointer(pixels, float_p, np.float32), pixels.size))
-        return pixels
+        size = c_int(), c_int()
+        self.library.check(self.c.kestrelGetFrameSize(self.handle, *map(byref, size)))
+        if (size[0].value, size[1].value) != (width, height):
+            raise ValueError(f"the frame has {size[0].value} x {size[1].value} pixels")
+        pixels = self.c.kestrelGetPassPixels(self.handle, encode(name))
+        if not pixels:
+            raise self.library.last_error()
+        return np.ctypeslib.as_array(pixels, (height * width, len(channels)))
 
     def stats(self):
         """JSON text about the last frame, None before the first."""

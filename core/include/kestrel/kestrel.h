@@ -328,6 +328,10 @@ KESTREL_API const char* kestrelGetPassChannels(KestrelRenderer renderer, const c
 KESTREL_API KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* pixels,
                                          size_t float_count);
 
+/* The same without a copy: width * height * channels floats that stay as they are until the next
+ * kestrelRender() on this renderer, or its release. NULL on failure. */
+KESTREL_API const float* kestrelGetPassPixels(KestrelRenderer renderer, const char* name);
+
 /* Times, rays and what was selected in the last frame, as the JSON of one entry of "frames".
  * Valid until the next call on this thread. NULL before the first frame. */
 KESTREL_API const char* kestrelGetStats(KestrelRenderer renderer);
