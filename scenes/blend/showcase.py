@@ -113,7 +113,7 @@ def add_boxes():
         common.add_box(f"{name}Box", location, size, shading.diffuse(name, colors[name]), turn)
     common.add_box("Crate", (3.25, 1.9, 0.6), (1.2, 1.2, 1.2),
                    shading.principled("Crate", image=crate_image()), 30)
-    common.add_box("GlassCube", (2.45, -1.95, 0.35), (0.7, 0.7, 0.7),
+    common.add_box("GlassCube", (2.45, -1.95, 0.351), (0.7, 0.7, 0.7),
                    shading.glass("AquaGlass", (0.70, 0.95, 0.96), 1.33), 35)
 
 
