@@ -186,6 +186,7 @@ FUNCTIONS = {
     "kestrelGetPassName": (c_char_p, [c_void_p, c_size_t]),
     "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
     "kestrelSetPasses": (c_int, [c_void_p, c_char_p]),
+    "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelGetPassPixels": (float_p, [c_void_p, c_char_p]),
     "kestrelGetStats": (c_char_p, [c_void_p]),
     "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
