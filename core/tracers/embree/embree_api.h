@@ -3,6 +3,10 @@
 // the filter functions.
 #pragma once
 
+#include <cstddef>
+
+#include "base/math.h"
+
 #if KESTREL_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
@@ -15,6 +19,31 @@ namespace kestrel::embree {
 inline constexpr int kPacket = 16;
 using RayPacket = RTCRay16;
 using RayHitPacket = RTCRayHit16;
+
+/// Fills one ray of a packet; filter functions see its `id`.
+inline void set_ray(RayPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
+                    float t_near, float t_far, size_t id) {
+  rays.org_x[lane] = origin.x;
+  rays.org_y[lane] = origin.y;
+  rays.org_z[lane] = origin.z;
+  rays.dir_x[lane] = direction.x;
+  rays.dir_y[lane] = direction.y;
+  rays.dir_z[lane] = direction.z;
+  rays.tnear[lane] = t_near;
+  rays.tfar[lane] = t_far;
+  rays.time[lane] = 0.0f;
+  rays.mask[lane] = ~0u;
+  rays.id[lane] = static_cast<unsigned>(id);
+  rays.flags[lane] = 0;
+}
+
+/// The same for a ray that is to find the nearest hit: none yet.
+inline void set_ray(RayHitPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
+                    float t_near, float t_far) {
+  set_ray(rays.ray, lane, origin, direction, t_near, t_far, lane);
+  rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+}
 
 #if KESTREL_EMBREE_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;

@@ -54,20 +54,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
     valid[lane] = x < out.width && y < out.height ? -1 : 0;
     const CameraRay& r = rays[lane] = camera.ray(x, y);
-    packet.ray.org_x[lane] = r.origin.x;
-    packet.ray.org_y[lane] = r.origin.y;
-    packet.ray.org_z[lane] = r.origin.z;
-    packet.ray.dir_x[lane] = r.direction.x;
-    packet.ray.dir_y[lane] = r.direction.y;
-    packet.ray.dir_z[lane] = r.direction.z;
-    packet.ray.tnear[lane] = r.t_near;
-    packet.ray.tfar[lane] = r.t_far;
-    packet.ray.time[lane] = 0.0f;
-    packet.ray.mask[lane] = ~0u;
-    packet.ray.id[lane] = static_cast<unsigned>(lane);
-    packet.ray.flags[lane] = 0;
-    packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    embree::set_ray(packet, lane, r.origin, r.direction, r.t_near, r.t_far);
   }
   embree::Query query;
   embree::intersect(rt.handle(), query, valid, packet);

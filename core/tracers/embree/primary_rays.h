@@ -3,8 +3,6 @@
 // baseline), and lights it.
 #pragma once
 
-#include <functional>
-
 #include "frame/frame.h"
 #include "scene/rt_scene.h"
 

@@ -9,19 +9,7 @@ void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance
                        const Task& task) {
   const size_t lane = tasks_.size() % embree::kPacket;
   if (lane == 0) packets_.emplace_back();
-  embree::RayPacket& packet = packets_.back();
-  packet.org_x[lane] = origin.x;
-  packet.org_y[lane] = origin.y;
-  packet.org_z[lane] = origin.z;
-  packet.dir_x[lane] = direction.x;
-  packet.dir_y[lane] = direction.y;
-  packet.dir_z[lane] = direction.z;
-  packet.tnear[lane] = 0.0f;
-  packet.tfar[lane] = distance;
-  packet.time[lane] = 0.0f;
-  packet.mask[lane] = ~0u;
-  packet.id[lane] = static_cast<unsigned>(tasks_.size());
-  packet.flags[lane] = 0;
+  embree::set_ray(packets_.back(), lane, origin, direction, 0.0f, distance, tasks_.size());
   tasks_.push_back(task);
 }
 

@@ -20,8 +20,6 @@ class ShadowQueue {
   /// From `origin` to `distance` along `direction`; all in world space, metres.
   void push(const vec3& origin, const vec3& direction, float distance, const Task& task);
 
-  size_t size() const { return tasks_.size(); }
-
   /// Traces all, calls `receive(task, transmitted)` in the order of the pushes, and empties the
   /// queue. `transmitted` is the share of light left, per colour. Returns milliseconds in Embree.
   template <typename Receive>

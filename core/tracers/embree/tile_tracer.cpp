@@ -19,23 +19,6 @@ vec3 leave_surface(const vec3& position, const vec3& normal, float travelled) {
   return position + normal * (1.6e-5f * magnitude);
 }
 
-void set_lane(embree::RayHitPacket& packet, int lane, const vec3& origin, const vec3& direction) {
-  packet.ray.org_x[lane] = origin.x;
-  packet.ray.org_y[lane] = origin.y;
-  packet.ray.org_z[lane] = origin.z;
-  packet.ray.dir_x[lane] = direction.x;
-  packet.ray.dir_y[lane] = direction.y;
-  packet.ray.dir_z[lane] = direction.z;
-  packet.ray.tnear[lane] = 0.0f;
-  packet.ray.tfar[lane] = INFINITY;
-  packet.ray.time[lane] = 0.0f;
-  packet.ray.mask[lane] = ~0u;
-  packet.ray.id[lane] = 0;
-  packet.ray.flags[lane] = 0;
-  packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-  packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-}
-
 }  // namespace
 
 TileTracer::TileTracer(const TraceRequest& request, const RtScene& scene, EffectBuffers& effects)
@@ -177,7 +160,8 @@ void TileTracer::trace_depth() {
   constexpr size_t kPacket = embree::kPacket;
   hits_.resize((paths_.size() + kPacket - 1) / kPacket);
   for (size_t i = 0; i < paths_.size(); ++i) {
-    set_lane(hits_[i / kPacket], i % kPacket, paths_[i].origin, paths_[i].direction);
+    embree::set_ray(hits_[i / kPacket], i % kPacket, paths_[i].origin, paths_[i].direction, 0.0f,
+                    INFINITY);
   }
   const auto begin = std::chrono::steady_clock::now();
   embree::Query query;
