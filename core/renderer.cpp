@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "renderer.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "frame/region_loops.h"
 #include "frame/sampling.h"
 #include "frame/stats.h"
 #include "scene/rt_scene.h"
@@ -22,11 +25,6 @@
 
 namespace kestrel {
 namespace {
-
-/// A frame that needs no budget is made in bands of about this many pixels: they stay in the
-/// processor's cache, and no plane of the whole picture is needed but the passes.
-constexpr int kBandPixels = 1 << 16;
-constexpr int kBandRows = 32;  // bands have a multiple of this many rows, so that tiles are whole
 
 /// How often progress is reported.
 constexpr auto kReportInterval = std::chrono::milliseconds(50);
@@ -50,6 +48,25 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// What the stages hand on of one region, and what they took for all regions that used it.
+struct Workspace {
+  GBuffer gbuffer;
+  EffectBuffers effects;
+  Plane<vec4> combined;
+  Areas areas;
+  StageTimes times;
+  uint64_t primary_rays = 0;
+  TraceCounts counts;
+
+  /// Before a frame. The memory of the planes stays.
+  void reset() {
+    areas.clear();
+    times = {};
+    primary_rays = 0;
+    counts = {};
+  }
+};
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -61,12 +78,15 @@ struct Renderer::Impl {
   void prepare();
   bool use_raster();
   bool limited() const;
-  int band_rows() const;
-  void rasterize(const FrameInputs& inputs);
-  void select(const FrameInputs& inputs, int sample);
-  void probe(const FrameInputs& inputs);
-  void trace(const FrameInputs& inputs, const Progress& progress);
-  void blend(const FrameInputs& inputs);
+  void render_sample(int sample);
+  void render_tiles(FrameInputs inputs, int sample);
+  void render_region(const FrameInputs& inputs, int sample, Workspace& work);
+  void rasterize(const FrameInputs& inputs, Workspace& work);
+  void select(const FrameInputs& inputs, int sample, Workspace& work);
+  void probe(const FrameInputs& inputs, Workspace& work);
+  void trace(const FrameInputs& inputs, Workspace& work);
+  void blend(const FrameInputs& inputs, Workspace& work);
+  void report(float sample_share);
   void finish();
 
   std::shared_ptr<Device> device;
@@ -84,17 +104,13 @@ struct Renderer::Impl {
   std::shared_ptr<const Scene> scene;
   int width = 0;
   int height = 0;
-  GBuffer gbuffer;
-  EffectBuffers effects;
-  Plane<vec4> combined;
-  Areas areas;
+  tbb::enumerable_thread_specific<Workspace> workspaces;
   Selection selection;
-  EffectBuffers totals;        // rays and times so far
-  double progress_done = 0.0;  // bands done, over all bands of all samples
-  double progress_step = 1.0;
-  std::atomic<std::chrono::steady_clock::rep> last_report = 0;
   Film film;
   FrameStats stats;
+  const Progress* progress = nullptr;
+  int samples_done = 0;
+  std::atomic<std::chrono::steady_clock::rep> last_report = 0;
 
   // The last whole frame.
   Film finished;
@@ -137,50 +153,72 @@ void Renderer::set_passes(const std::vector<std::string>& names) {
   impl_->passes = names;
 }
 
-/// The four stages, for each sample and each band of rows.
-void Renderer::Impl::render(const Progress& progress) {
+void Renderer::Impl::render(const Progress& report_to) {
   stats = {};
-  totals = {};
-  areas.clear();
+  progress = &report_to;
   last_report = 0;
+  for (Workspace& work : workspaces) work.reset();
   film = Film(width, height, passes);
   {
     const Stopwatch watch(stats.frame_ms);
     prepare();
-    const Settings& settings = scene->settings;
-    const int rows = band_rows();
-    progress_done = 0.0;
-    progress_step = 1.0 / (settings.samples * ((height + rows - 1) / rows));
-    for (int sample = 0; sample < settings.samples; ++sample) {
-      for (int first_row = 0; first_row < height; first_row += rows) {
-        const FrameInputs inputs{*scene,
-                                 width,
-                                 height,
-                                 subpixel_offset(settings, sample),
-                                 settings.budget_ms / static_cast<float>(settings.samples),
-                                 first_row,
-                                 std::min(rows, height - first_row)};
-        rasterize(inputs);
-        select(inputs, sample);
-        trace(inputs, progress);
-        blend(inputs);
-        film.add(inputs, sample, gbuffer, effects, combined);
-      }
+    for (samples_done = 0; samples_done < scene->settings.samples; ++samples_done) {
+      render_sample(samples_done);
     }
   }
   finish();
 }
 
+/// The graph needs to see the whole picture, and so does the rasteriser. Else every thread takes
+/// tiles through all stages, so that their data stays in its cache.
+void Renderer::Impl::render_sample(int sample) {
+  const Settings& settings = scene->settings;
+  const FrameInputs inputs{*scene, width, height, subpixel_offset(settings, sample),
+                           settings.budget_ms / static_cast<float>(settings.samples)};
+  if (limited() || raster) {
+    Workspace& work = workspaces.local();
+    render_region(inputs, sample, work);
+    stats.stages += std::exchange(work.times, {});
+  } else {
+    render_tiles(inputs, sample);
+  }
+}
+
+void Renderer::Impl::render_tiles(FrameInputs picture, int sample) {
+  if (sample == 0) {
+    // Nothing is seen yet: as if every object were visible.
+    selection = heuristic.select(picture, Areas(scene->objects.size() + 1, 1));
+  }
+  double wall_ms = 0.0;
+  {
+    const Stopwatch watch(wall_ms);
+    std::atomic<int> done = 0;
+    const float tiles = static_cast<float>(tile_count(picture.region));
+    for_tiles(picture.region, [&](const Region& tile) {
+      FrameInputs inputs = picture;
+      inputs.region = tile;
+      render_region(inputs, sample, workspaces.local());
+      report(static_cast<float>(++done) / tiles);
+    });
+  }
+  // The stages ran side by side: each gets its share of the wall time.
+  StageTimes threads;
+  for (Workspace& work : workspaces) threads += std::exchange(work.times, {});
+  stats.stages += threads * (wall_ms / std::max(threads.sum(), 1e-9));
+}
+
+/// The four stages, and what becomes of their results.
+void Renderer::Impl::render_region(const FrameInputs& inputs, int sample, Workspace& work) {
+  rasterize(inputs, work);
+  select(inputs, sample, work);
+  trace(inputs, work);
+  blend(inputs, work);
+  film.add(inputs, sample, work.gbuffer, work.effects, work.combined);
+}
+
 /// Whether the graph decides; else every visible object is traced, or none.
 bool Renderer::Impl::limited() const {
   return scene->settings.selection == SelectionPolicy::graph && scene->settings.budget_ms > 0.0f;
-}
-
-/// The graph needs to see the whole picture, and so does the rasteriser.
-int Renderer::Impl::band_rows() const {
-  if (limited() || raster) return height;
-  const int rows = (kBandPixels / width + kBandRows - 1) / kBandRows * kBandRows;
-  return std::clamp(rows, kBandRows, std::max(height, kBandRows));
 }
 
 /// Brings what the stages read up to date with the scene.
@@ -210,89 +248,94 @@ bool Renderer::Impl::use_raster() {
   }
 }
 
-void Renderer::Impl::rasterize(const FrameInputs& inputs) {
-  const Stopwatch watch(stats.stages.raster);
+void Renderer::Impl::rasterize(const FrameInputs& inputs, Workspace& work) {
+  const Stopwatch watch(work.times.raster);
   if (raster) {
-    raster->run(inputs, gbuffer);
+    raster->run(inputs, work.gbuffer);
   } else {
-    stats.rays.primary += primary_rays.run(inputs, gbuffer);
+    work.primary_rays += primary_rays.run(inputs, work.gbuffer);
   }
 }
 
-/// Decides who is traced: with a budget on the first sample's whole picture, else before anything
-/// is seen, as if every object were visible.
-void Renderer::Impl::select(const FrameInputs& inputs, int sample) {
-  const Stopwatch watch(stats.stages.heuristic);
-  if (sample == 0) count_areas(*scene, gbuffer, areas);
-  const bool first = sample == 0 && inputs.first_row == 0;
-  if (first && limited()) {
-    selection = heuristic.select(inputs, areas);
+/// Decides who is traced, where that takes a look at the whole picture.
+void Renderer::Impl::select(const FrameInputs& inputs, int sample, Workspace& work) {
+  if (sample > 0) return;
+  const Stopwatch watch(work.times.heuristic);
+  count_areas(inputs, work.gbuffer, work.areas);
+  if (limited()) {
+    selection = heuristic.select(inputs, work.areas);
     if (!heuristic.calibrated()) {
-      probe(inputs);
-      selection = heuristic.select(inputs, areas);
+      probe(inputs, work);
+      selection = heuristic.select(inputs, work.areas);
     }
-  } else if (first) {
+  } else if (raster) {
     selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
   }
-  if (sample == 0) write_heuristic_mask(*scene, selection, gbuffer);
-  if (first && scene->settings.validate_areas && raster) {
+  write_heuristic_mask(inputs, selection, work.gbuffer);
+  if (scene->settings.validate_areas && raster) {
     stats.occlusion_areas = raster->occlusion_areas(inputs);
   }
 }
 
 /// Measures what tracing costs here, on few pixels of everything in view.
-void Renderer::Impl::probe(const FrameInputs& inputs) {
-  const double pixels = static_cast<double>(inputs.pixels());
+void Renderer::Impl::probe(const FrameInputs& inputs, Workspace& work) {
+  const double pixels = static_cast<double>(inputs.region.pixels());
   const int stride = std::max(1, static_cast<int>(std::sqrt(pixels / kProbePixels)));
   double ms = 0.0;
+  TraceCounts counts;
+  counts.reset(scene->units.size());
   {
     const Stopwatch watch(ms);
-    trace_stage.run({inputs, gbuffer, selection, stride, {}, {}}, effects);
+    trace_stage.run({inputs, work.gbuffer, selection, stride, {}, {}}, work.effects, counts);
   }
-  heuristic.learn(inputs, selection, effects, ms, 1.0 / (stride * stride));
+  heuristic.learn(inputs, selection, counts, ms, 1.0 / (stride * stride));
 }
 
-void Renderer::Impl::trace(const FrameInputs& inputs, const Progress& progress) {
-  const Stopwatch watch(stats.stages.trace);
-  const auto report = [&](float share) {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    auto last = last_report.load();
-    if (!progress || now - decltype(now)(last) < kReportInterval ||
-        !last_report.compare_exchange_strong(last, now.count())) {
-      return;
-    }
-    const double done = progress_done + share * progress_step;
-    const int sample = std::min(static_cast<int>(done * stats.samples) + 1, stats.samples);
-    if (!progress(static_cast<float>(done), fmt::format("Sample {}/{}", sample, stats.samples))) {
-      cancel_requested = true;
-    }
-  };
-  report(0.0f);
-  trace_stage.run(
-      {inputs, gbuffer, selection, 1, [this] { return cancel_requested.load(); }, report}, effects);
-  progress_done += progress_step;
-  totals.rays += effects.rays;
-  totals.trace_calls_ms += effects.trace_calls_ms;
-  totals.rays_by_unit.resize(effects.rays_by_unit.size(), 0);
-  for (size_t i = 0; i < effects.rays_by_unit.size(); ++i) {
-    totals.rays_by_unit[i] += effects.rays_by_unit[i];
-  }
+void Renderer::Impl::trace(const FrameInputs& inputs, Workspace& work) {
+  const Stopwatch watch(work.times.trace);
+  const auto cancelled = [this] { return cancel_requested.load(); };
+  TraceRequest request{inputs, work.gbuffer, selection, 1, cancelled, {}};
+  if (limited() || raster) request.progress = [this](float share) { report(share); };
+  trace_stage.run(request, work.effects, work.counts);
 }
 
-void Renderer::Impl::blend(const FrameInputs& inputs) {
-  const Stopwatch watch(stats.stages.blend);
-  blend_stage.run(inputs, gbuffer, selection, effects, combined);
+void Renderer::Impl::blend(const FrameInputs& inputs, Workspace& work) {
+  const Stopwatch watch(work.times.blend);
+  blend_stage.run(inputs, work.gbuffer, selection, work.effects, work.combined);
+}
+
+/// Tells how far the frame is, now and then; `sample_share` of the sample under way is done.
+void Renderer::Impl::report(float sample_share) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  auto last = last_report.load();
+  if (!*progress || now - decltype(now)(last) < kReportInterval ||
+      !last_report.compare_exchange_strong(last, now.count())) {
+    return;
+  }
+  const int samples = scene->settings.samples;
+  const float share = (static_cast<float>(samples_done) + sample_share) / static_cast<float>(samples);
+  if (!(*progress)(share, fmt::format("Sample {}/{}", samples_done + 1, samples))) {
+    cancel_requested = true;
+  }
 }
 
 /// Publishes the frame, and lets the heuristic learn from it.
 void Renderer::Impl::finish() {
   const FrameInputs inputs{*scene, width, height};
+  TraceCounts counts;
+  counts.reset(scene->units.size());
+  Areas areas(scene->objects.size() + 1, 0);
+  for (const Workspace& work : workspaces) {
+    counts += work.counts;
+    stats.rays.primary += work.primary_rays;
+    for (size_t i = 0; i < work.areas.size(); ++i) areas[i] += work.areas[i];
+  }
   stats.selection = limited() ? selection : heuristic.select(inputs, areas);
   heuristic.remember(stats.selection);
-  heuristic.learn(inputs, stats.selection, totals, stats.stages.trace, stats.samples);
-  stats.rays += totals.rays;
-  stats.trace_calls_ms = totals.trace_calls_ms;
-  film.finish();
+  heuristic.learn(inputs, stats.selection, counts, stats.stages.trace, stats.samples);
+  stats.rays += counts.rays;
+  stats.trace_calls_ms = counts.trace_calls_ms;
+  film.finish(stats.samples);
   finished = std::move(film);
   stats_json = to_json(stats, *scene);
   log::info(

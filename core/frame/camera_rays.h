@@ -25,13 +25,14 @@ class CameraRays {
         position_(camera_.world_from_camera[3]),
         scale_((camera_.right - camera_.left) / static_cast<float>(inputs.width),
                (camera_.top - camera_.bottom) / static_cast<float>(inputs.height)),
-        first_(camera_.left + (0.5f + inputs.subpixel.x) * scale_.x,
-               camera_.bottom +
-                   (0.5f + static_cast<float>(inputs.first_row) + inputs.subpixel.y) * scale_.y) {}
+        corner_(camera_.left, camera_.bottom),
+        first_pixel_(inputs.region.x, inputs.region.y),
+        sample_(0.5f + inputs.subpixel) {}
 
-  /// The ray through the frame's sample position of pixel (x, y), row 0 at the bottom of the band.
+  /// The ray through the frame's sample position of pixel (x, y) of the region. The same bits
+  /// whatever the region.
   CameraRay ray(int x, int y) const {
-    const vec2 at = first_ + vec2(x, y) * scale_;
+    const vec2 at = corner_ + (vec2(first_pixel_ + ivec2(x, y)) + sample_) * scale_;
     if (camera_.projection == Projection::orthographic) {
       const vec3 origin = position_ + at.x * right_ + at.y * up_;
       return {origin, -backward_, camera_.near_clip, camera_.far_clip};
@@ -61,7 +62,9 @@ class CameraRays {
   const Camera& camera_;
   vec3 right_, up_, backward_, position_;
   vec2 scale_;
-  vec2 first_;
+  vec2 corner_;        // of the window
+  ivec2 first_pixel_;  // of the region
+  vec2 sample_;        // from the pixel's corner, in pixels
 };
 
 }  // namespace kestrel

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/film.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 
 #include "base/error.h"
+#include "frame/region_loops.h"
 
 namespace kestrel {
 namespace {
@@ -116,14 +115,16 @@ Film::Film(int width, int height, const std::vector<std::string>& wanted)
 
 void Film::add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
                const EffectBuffers& effects, const Plane<vec4>& combined) {
-  samples_ = sample + 1;
   const Sources from{inputs.scene.camera, gbuffer, effects, combined};
-  const size_t width = static_cast<size_t>(width_);
-  tbb::parallel_for(0, inputs.rows, [&](int row) {
+  const Region& region = inputs.region;
+  const size_t width = static_cast<size_t>(region.width);
+  for_rows(region, [&](int row) {
+    const size_t first = static_cast<size_t>(region.y + row) * static_cast<size_t>(width_) +
+                         static_cast<size_t>(region.x);
     for (Channel& pass : passes_) {
       const PassRow& source = pass_rows()[pass.pass];
       if (sample > 0 && !source.averaged) continue;
-      float* out = &pass.sums[static_cast<size_t>(inputs.first_row + row) * width * pass.channels];
+      float* out = &pass.sums[first * pass.channels];
       for (size_t x = 0; x < width; ++x, out += pass.channels) {
         float value[4];
         source.get(from, static_cast<size_t>(row) * width + x, value);
@@ -152,9 +153,9 @@ size_t Film::float_count(std::string_view name) const {
   return find(name).sums.size();
 }
 
-void Film::finish() {
-  if (samples_ < 2) return;
-  const float scale = 1.0f / static_cast<float>(samples_);
+void Film::finish(int samples) {
+  if (samples < 2) return;
+  const float scale = 1.0f / static_cast<float>(samples);
   for (Channel& pass : passes_) {
     if (!pass_rows()[pass.pass].averaged) continue;
     for (float& value : pass.sums) value *= scale;

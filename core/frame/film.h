@@ -28,12 +28,13 @@ class Film {
   /// Throws Error(invalid_argument) for a name that is not in the table.
   Film(int width, int height, const std::vector<std::string>& wanted);
 
-  /// Adds the band of `inputs` of sample `sample`; sample 0 comes first.
+  /// Adds the region of `inputs` of sample `sample`; sample 0 comes first. Different regions may
+  /// be added at the same time.
   void add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
            const EffectBuffers& effects, const Plane<vec4>& combined);
 
-  /// Turns the sums into averages, after the last sample.
-  void finish();
+  /// Turns the sums of so many samples into averages.
+  void finish(int samples);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -56,7 +57,6 @@ class Film {
 
   int width_ = 0;
   int height_ = 0;
-  int samples_ = 0;
   std::vector<Channel> passes_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/frame.h"
 
+#include <algorithm>
+
 namespace kestrel {
 
 void GBuffer::resize(int new_width, int new_height) {
@@ -20,6 +22,19 @@ void GBuffer::resize(int new_width, int new_height) {
   object.resize(n);
   material.resize(n);
   lighting.resize(n);
+}
+
+void TraceCounts::reset(size_t units) {
+  *this = {};
+  rays_by_unit.resize(units, 0);
+}
+
+TraceCounts& TraceCounts::operator+=(const TraceCounts& o) {
+  rays += o.rays;
+  trace_calls_ms += o.trace_calls_ms;
+  rays_by_unit.resize(std::max(rays_by_unit.size(), o.rays_by_unit.size()), 0);
+  for (size_t i = 0; i < o.rays_by_unit.size(); ++i) rays_by_unit[i] += o.rays_by_unit[i];
+  return *this;
 }
 
 }  // namespace kestrel

@@ -13,19 +13,25 @@
 
 namespace kestrel {
 
-/// What every stage needs to know of this frame. Stages work on the whole picture or, to need less
-/// memory, on a band of its rows.
+/// A rectangle of the picture, in pixels; row 0 is at the bottom.
+struct Region {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+};
+
+/// What every stage needs to know of this frame. Stages work on the whole picture or, so that all
+/// their data stays in the processor's cache, on a tile of it.
 struct FrameInputs {
   const Scene& scene;
   int width;               // of the picture, pixels
   int height;              // of the picture, pixels
   vec2 subpixel{0.0f};     // sample position, offset from the pixel's centre, in pixels
   float budget_ms = 0.0f;  // T for this sample: the frame's share; 0 means no limit
-  int first_row = 0;       // of the band
-  int rows = height;       // of the band
-
-  /// Of the band.
-  size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(rows); }
+  Region region{0, 0, width, height};  // what is rendered now; the planes have its size
 };
 
 /// Planes are written whole by whoever fills them, in parallel: new memory is left uninitialised,
@@ -52,7 +58,7 @@ using Plane = std::vector<T, UninitializedAllocator<T>>;
 /// Where `object == 0` nothing was hit: lighting holds the world, the other planes zero.
 struct GBuffer {
   int width = 0;
-  int height = 0;                // of the picture or the band
+  int height = 0;                // of the region
   Plane<vec3> position;          // world space
   Plane<vec3> normal;            // world space, unit, after normal maps, on the mesh's own side
   Plane<vec3> normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
@@ -111,14 +117,22 @@ struct RayCounts {
   }
 };
 
+/// What tracing took: a sum over regions and samples.
+struct TraceCounts {
+  RayCounts rays;
+  double trace_calls_ms = 0.0;         // thread time inside Embree calls
+  std::vector<uint64_t> rays_by_unit;  // parallel to Scene::units
+
+  /// Nothing yet, of a scene with so many units.
+  void reset(size_t units);
+  TraceCounts& operator+=(const TraceCounts& o);
+};
+
 /// Stage 3's output. Where nothing is traced: shadow 1, the others 0.
 struct EffectBuffers {
   Plane<vec3> shadow;      // S = 1 - Σ blocked light, unclamped
   Plane<vec3> reflection;  // M, already tinted by the material's reflection colour
   Plane<vec3> refraction;  // R, already tinted by the material's transmission colour
-  RayCounts rays;
-  double trace_calls_ms = 0.0;         // thread time inside Embree calls
-  std::vector<uint64_t> rays_by_unit;  // parallel to Scene::units
 };
 
 }  // namespace kestrel

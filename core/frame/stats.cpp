@@ -33,6 +33,20 @@ Json unit_json(const Unit& unit, const UnitSelection& s) {
 
 }  // namespace
 
+StageTimes& StageTimes::operator+=(const StageTimes& o) {
+  update += o.update;
+  raster += o.raster;
+  heuristic += o.heuristic;
+  trace += o.trace;
+  blend += o.blend;
+  return *this;
+}
+
+StageTimes operator*(const StageTimes& t, double factor) {
+  return {t.update * factor, t.raster * factor, t.heuristic * factor, t.trace * factor,
+          t.blend * factor};
+}
+
 std::string to_json(const FrameStats& stats, const Scene& scene) {
   Json objects = Json::array();
   for (size_t i = 0; i < stats.selection.units.size(); ++i) {

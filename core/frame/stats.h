@@ -15,7 +15,13 @@ struct StageTimes {
   double heuristic = 0.0;
   double trace = 0.0;
   double blend = 0.0;
+
+  StageTimes& operator+=(const StageTimes& o);
+  double sum() const { return update + raster + heuristic + trace + blend; }
 };
+
+/// Every time, scaled.
+StageTimes operator*(const StageTimes& times, double factor);
 
 /// What one frame did and cost.
 struct FrameStats {

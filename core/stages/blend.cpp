@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/blend.h"
 
-#include <tbb/parallel_for.h>
+#include "frame/region_loops.h"
 
 namespace kestrel {
 
@@ -14,9 +14,9 @@ vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflectio
 
 void BlendStage::run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
                      const EffectBuffers& effects, Plane<vec4>& combined) {
-  combined.resize(inputs.pixels());
-  const size_t width = static_cast<size_t>(inputs.width);
-  tbb::parallel_for(0, inputs.rows, [&](int y) {
+  combined.resize(inputs.region.pixels());
+  const size_t width = static_cast<size_t>(inputs.region.width);
+  for_rows(inputs.region, [&](int y) {
     for (size_t i = y * width; i < (y + 1) * width; ++i) {
       const uint32_t object = gbuffer.object[i];
       const uint8_t traced =

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/heuristic.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cassert>
@@ -12,12 +10,13 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "frame/region_loops.h"
+
 namespace kestrel {
 namespace {
 
 constexpr float kMinCentrality = 0.01f;  // P outside the view (listing 6)
 constexpr float kMinDistance = 1e-3f;    // metres; keeps V finite where the camera is inside
-constexpr size_t kPixelsPerTask = 1 << 15;
 
 // Learning E.
 constexpr float kCostSmoothing = 0.5f;  // weight of a new measurement
@@ -134,41 +133,41 @@ Candidates grant_always(const Scene& scene, double ms_per_ray, Selection& select
 
 // ---- The stage -------------------------------------------------------------------------------
 
-void count_areas(const Scene& scene, const GBuffer& gbuffer, Areas& areas) {
-  const auto& ids = gbuffer.object;
-  const size_t id_count = scene.objects.size() + 1;
+void count_areas(const FrameInputs& inputs, const GBuffer& gbuffer, Areas& areas) {
+  const size_t id_count = inputs.scene.objects.size() + 1;
   areas.resize(id_count, 0);
-  tbb::enumerable_thread_specific<std::vector<uint32_t>> partial(
-      [id_count] { return std::vector<uint32_t>(id_count, 0); });
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, ids.size(), kPixelsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      std::vector<uint32_t>& counts = partial.local();
-                      for (size_t i = range.begin(); i < range.end();) {
-                        const uint32_t id = ids[i];
-                        const size_t first = i;
-                        while (i < range.end() && ids[i] == id) ++i;
-                        assert(id < id_count);
-                        counts[id] += static_cast<uint32_t>(i - first);
-                      }
-                    });
-  for (const auto& counts : partial) {
+  const size_t width = static_cast<size_t>(inputs.region.width);
+  const auto count_row = [&](int y, auto& counts) {
+    for (size_t i = y * width; i < (y + 1) * width;) {
+      const uint32_t id = gbuffer.object[i];
+      const size_t first = i;
+      while (i < (y + 1) * width && gbuffer.object[i] == id) ++i;
+      assert(id < id_count);
+      counts[id] += i - first;
+    }
+  };
+  if (inputs.region.width <= kTileSize && inputs.region.height <= kTileSize) {
+    for (int y = 0; y < inputs.region.height; ++y) count_row(y, areas);
+    return;
+  }
+  tbb::enumerable_thread_specific<Areas> partial([id_count] { return Areas(id_count, 0); });
+  for_rows(inputs.region, [&](int y) { count_row(y, partial.local()); });
+  for (const Areas& counts : partial) {
     for (size_t id = 0; id < id_count; ++id) areas[id] += counts[id];
   }
 }
 
-void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer) {
-  std::vector<float> mask_of_id(scene.objects.size() + 1, 0.0f);
-  for (size_t i = 0; i < scene.objects.size(); ++i) {
-    const int unit = scene.objects[i].unit;
-    if (unit != kNone && selection.units[unit].effects != 0) mask_of_id[i + 1] = 1.0f;
-  }
+void write_heuristic_mask(const FrameInputs& inputs, const Selection& selection,
+                          GBuffer& gbuffer) {
   gbuffer.heuristic_mask.resize(gbuffer.object.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, gbuffer.object.size(), kPixelsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) {
-                      for (size_t i = range.begin(); i < range.end(); ++i) {
-                        gbuffer.heuristic_mask[i] = mask_of_id[gbuffer.object[i]];
-                      }
-                    });
+  const size_t width = static_cast<size_t>(inputs.region.width);
+  for_rows(inputs.region, [&](int y) {
+    for (size_t i = y * width; i < (y + 1) * width; ++i) {
+      const uint32_t id = gbuffer.object[i];
+      const int unit = id == 0 ? kNone : inputs.scene.objects[id - 1].unit;
+      gbuffer.heuristic_mask[i] = unit != kNone && selection.units[unit].effects ? 1.0f : 0.0f;
+    }
+  });
 }
 
 Selection HeuristicStage::select(const FrameInputs& inputs, const Areas& areas) {
@@ -260,17 +259,17 @@ void HeuristicStage::choose(const FrameInputs& inputs, Selection& selection) con
 // ---- Learning --------------------------------------------------------------------------------
 
 void HeuristicStage::learn(const FrameInputs& inputs, Selection& selection,
-                           const EffectBuffers& effects, double trace_ms, double coverage) {
+                           const TraceCounts& counts, double trace_ms, double coverage) {
   const Scene& scene = inputs.scene;
   assert(selection.units.size() == memory_.size());
-  assert(effects.rays_by_unit.size() == selection.units.size());
+  assert(counts.rays_by_unit.size() == selection.units.size());
   uint64_t traced_rays = 0;
-  for (const uint64_t rays : effects.rays_by_unit) traced_rays += rays;
+  for (const uint64_t rays : counts.rays_by_unit) traced_rays += rays;
   const size_t lights = shadow_light_count(scene);
   double predicted_rays = 0.0;  // before anything is learned from this frame
   for (size_t i = 0; i < selection.units.size(); ++i) {
     UnitSelection& u = selection.units[i];
-    u.traced_rays = effects.rays_by_unit[i];
+    u.traced_rays = counts.rays_by_unit[i];
     u.ms = traced_rays ? trace_ms * static_cast<double>(u.traced_rays) / traced_rays : 0.0;
     predicted_rays += static_cast<double>(u.area) * rays_per_pixel(u.effects, lights) *
                       u.estimated_cost * coverage;

@@ -15,11 +15,11 @@ namespace kestrel {
 /// Visible pixels by G-buffer object id, nothing (0) included.
 using Areas = std::vector<uint64_t>;
 
-/// Adds a histogram of the G-buffer's object ids. The same whatever the number of threads.
-void count_areas(const Scene& scene, const GBuffer& gbuffer, Areas& areas);
+/// Adds a histogram of the region's object ids. The same whatever the number of threads.
+void count_areas(const FrameInputs& inputs, const GBuffer& gbuffer, Areas& areas);
 
 /// 1 on the pixels of units of which some effect is traced, 0 elsewhere.
-void write_heuristic_mask(const Scene& scene, const Selection& selection, GBuffer& gbuffer);
+void write_heuristic_mask(const FrameInputs& inputs, const Selection& selection, GBuffer& gbuffer);
 
 class HeuristicStage {
  public:
@@ -40,7 +40,7 @@ class HeuristicStage {
   /// traced is its time, smoothed. Fills `ms` and `traced_rays` of each unit. `selection` is that
   /// of the last select(); `trace_ms` is stage 3's wall time; `coverage` is how often it traced
   /// each selected pixel: the number of samples, or the share of pixels that a probe took.
-  void learn(const FrameInputs& inputs, Selection& selection, const EffectBuffers& effects,
+  void learn(const FrameInputs& inputs, Selection& selection, const TraceCounts& counts,
              double trace_ms, double coverage = 1.0);
 
   /// Whether costs are known; while they are not, a probe should come first. They are given up as

@@ -209,7 +209,7 @@ void RasterStage::update(const std::shared_ptr<const Scene>& scene) {
 
 void RasterStage::run(const FrameInputs& inputs, GBuffer& out) {
   out.resize(inputs.width, inputs.height);
-  if (inputs.pixels() == 0) return;
+  if (inputs.region.pixels() == 0) return;
   impl_->context->run([&] { impl_->passes->run(inputs, out); });
 }
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/trace.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "base/error.h"
+#include "frame/region_loops.h"
 
 namespace kestrel {
 namespace {
 
 /// "Nothing traced".
-void reset(EffectBuffers& effects, size_t width, int height) {
+void reset(EffectBuffers& effects, const Region& region) {
   for (auto* plane : {&effects.shadow, &effects.reflection, &effects.refraction}) {
-    plane->resize(width * static_cast<size_t>(height));
+    plane->resize(region.pixels());
   }
-  tbb::parallel_for(0, height, [&](int y) {
+  const size_t width = static_cast<size_t>(region.width);
+  for_rows(region, [&](int y) {
     const auto fill_row = [&](Plane<vec3>& plane, const vec3& value) {
       std::fill_n(plane.begin() + static_cast<ptrdiff_t>(y * width), width, value);
     };
@@ -27,15 +27,11 @@ void reset(EffectBuffers& effects, size_t width, int height) {
 
 }  // namespace
 
-void TraceStage::run(const TraceRequest& request, EffectBuffers& effects) {
-  reset(effects, static_cast<size_t>(request.inputs.width), request.inputs.rows);
-  effects.rays = {};
-  effects.trace_calls_ms = 0.0;
-  effects.rays_by_unit.assign(request.inputs.scene.units.size(), 0);
-
+void TraceStage::run(const TraceRequest& request, EffectBuffers& effects, TraceCounts& counts) {
+  reset(effects, request.inputs.region);
   bool anything = false;
   for (const UnitSelection& unit : request.selection.units) anything |= unit.effects != 0;
-  if (anything) tracer_.trace(request, effects);
+  if (anything) tracer_.trace(request, effects, counts);
   if (request.cancelled && request.cancelled()) {
     fail(ErrorCode::cancelled, "The render was cancelled.");
   }

@@ -11,8 +11,9 @@ class TraceStage {
   /// `tracer` must outlive the stage.
   explicit TraceStage(Tracer& tracer) : tracer_(tracer) {}
 
-  /// Resets `effects` to "nothing traced" and lets the tracer fill it. Throws Error(cancelled).
-  void run(const TraceRequest& request, EffectBuffers& effects);
+  /// Resets `effects` to "nothing traced", lets the tracer fill it, and adds to `counts`. Throws
+  /// Error(cancelled).
+  void run(const TraceRequest& request, EffectBuffers& effects, TraceCounts& counts);
 
  private:
   Tracer& tracer_;

@@ -53,8 +53,8 @@ GBuffer make_gbuffer(int units, int size) {
 }
 
 /// What a tracer would report that needs the predicted number of rays.
-EffectBuffers predicted_effects(const Selection& selection) {
-  EffectBuffers effects;
+TraceCounts predicted_effects(const Selection& selection) {
+  TraceCounts effects;
   for (const UnitSelection& u : selection.units) {
     effects.rays_by_unit.push_back(
         u.effects ? static_cast<uint64_t>(static_cast<double>(u.area) * u.rays) : 0);
@@ -64,9 +64,9 @@ EffectBuffers predicted_effects(const Selection& selection) {
 
 Selection run(HeuristicStage& stage, const FrameInputs& inputs, GBuffer& gbuffer) {
   Areas areas;
-  count_areas(inputs.scene, gbuffer, areas);
+  count_areas(inputs, gbuffer, areas);
   Selection selection = stage.select(inputs, areas);
-  write_heuristic_mask(inputs.scene, selection, gbuffer);
+  write_heuristic_mask(inputs, selection, gbuffer);
   stage.remember(selection);
   return selection;
 }
@@ -82,7 +82,7 @@ void BM_Frame(benchmark::State& state) {
   for (auto _ : state) {
     selection = run(stage, inputs, gbuffer);
     state.PauseTiming();
-    const EffectBuffers effects = predicted_effects(selection);
+    const TraceCounts effects = predicted_effects(selection);
     state.ResumeTiming();
     stage.learn(inputs, selection, effects, 20.0);
   }

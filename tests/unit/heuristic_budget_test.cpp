@@ -33,7 +33,7 @@ class Simulation {
     HeuristicStage other;
     GBuffer gbuffer = make_gbuffer(areas, kPictureWidth, kPictureHeight);
     Selection s = run(other, {all, kPictureWidth, kPictureHeight}, gbuffer);
-    EffectBuffers effects;
+    TraceCounts effects;
     return trace(s, 1.0, effects, 0.0);
   }
 
@@ -48,7 +48,7 @@ class Simulation {
     const FrameInputs inputs{scene, kPictureWidth, kPictureHeight, vec2(0.0f),
                              scene.settings.budget_ms};
     Selection s = run(stage, inputs, gbuffer);
-    EffectBuffers effects;
+    TraceCounts effects;
     if (inputs.budget_ms > 0.0f && !stage.calibrated()) {
       ++probes;
       const double probe_ms = trace(s, 1.0 / 256.0, effects, noise_);
@@ -82,7 +82,7 @@ class Simulation {
   static constexpr int kPictureWidth = 512;
   static constexpr int kPictureHeight = 256;
 
-  double trace(const Selection& s, double coverage, EffectBuffers& effects, double noise) {
+  double trace(const Selection& s, double coverage, TraceCounts& effects, double noise) {
     effects.rays_by_unit.clear();
     double rays = 0.0;
     for (size_t i = 0; i < s.units.size(); ++i) {

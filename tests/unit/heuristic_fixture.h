@@ -67,9 +67,9 @@ inline GBuffer make_gbuffer(const std::vector<int>& areas, int width = kWidth,
 /// Stage 2 of one frame. What is selected for a probe, while costs are unknown, is not remembered.
 inline Selection run(HeuristicStage& stage, const FrameInputs& inputs, GBuffer& gbuffer) {
   Areas areas;
-  count_areas(inputs.scene, gbuffer, areas);
+  count_areas(inputs, gbuffer, areas);
   const Selection selection = stage.select(inputs, areas);
-  write_heuristic_mask(inputs.scene, selection, gbuffer);
+  write_heuristic_mask(inputs, selection, gbuffer);
   const bool limited =
       inputs.scene.settings.selection == SelectionPolicy::graph && inputs.budget_ms > 0.0f;
   if (!limited || stage.calibrated()) stage.remember(selection);
@@ -88,7 +88,7 @@ inline Selection run_once(const Scene& scene, const std::vector<int>& areas) {
 
 inline void learn(HeuristicStage& stage, const Scene& scene, Selection& selection,
                   const std::vector<uint64_t>& rays, double ms, double coverage = 1.0) {
-  EffectBuffers effects;
+  TraceCounts effects;
   effects.rays_by_unit = rays;
   stage.learn({scene, kWidth, kHeight}, selection, effects, ms, coverage);
 }

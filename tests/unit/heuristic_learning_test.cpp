@@ -36,7 +36,7 @@ TEST(Heuristic, AProbesFewPixelsDoNotDecideAUnitsCost) {
   GBuffer gbuffer = make_gbuffer({300, 512000}, 1024, 512);
   const FrameInputs inputs{scene, 1024, 512, vec2(0.0f), 20.0f};
   Selection s = run(stage, inputs, gbuffer);
-  EffectBuffers effects;
+  TraceCounts effects;
   effects.rays_by_unit = {0, 4000};  // the small one was missed, the large one needs twice Q
   stage.learn(inputs, s, effects, 1.0, 1.0 / 256.0);
   s = run(stage, inputs, gbuffer);

@@ -15,10 +15,10 @@
 
 namespace kestrel::embree {
 
-/// Rays of one packet; Embree splits them where the processor's vectors are narrower.
-inline constexpr int kPacket = 16;
-using RayPacket = RTCRay16;
-using RayHitPacket = RTCRayHit16;
+/// Rays of one packet. Embree traces wider packets than the processor's vectors ray by ray.
+inline constexpr int kPacket = 8;
+using RayPacket = RTCRay8;
+using RayHitPacket = RTCRayHit8;
 
 /// Fills one ray of a packet; filter functions see its `id`.
 inline void set_ray(RayPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
@@ -52,9 +52,8 @@ using QueryContext = RTCIntersectContext;
 #endif
 
 /// One traversal's context. Derive from it to give filter functions more; `context` comes first so
-/// that a filter can cast back. Embree's flag for coherent rays is not used: in scenes with many
-/// overlapping instances Embree 3's frustum traversal of infinite rays all but hangs, and packets
-/// are faster than single rays without it too.
+/// that a filter can cast back. Packets are made of rays that go the same way, so Embree is told
+/// to take them through its tree together.
 struct Query {
   QueryContext context;
 
@@ -63,6 +62,7 @@ struct Query {
     rtcInitRayQueryContext(&context);
 #else
     rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #endif
   }
 };
@@ -72,6 +72,7 @@ struct Query {
 inline RTCIntersectArguments intersect_arguments(Query& query) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   arguments.context = &query.context;
   return arguments;
 }
@@ -79,26 +80,27 @@ inline RTCIntersectArguments intersect_arguments(Query& query) {
 inline RTCOccludedArguments occluded_arguments(Query& query) {
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
   arguments.context = &query.context;
   return arguments;
 }
 
 inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
   RTCIntersectArguments arguments = intersect_arguments(query);
-  rtcIntersect16(valid, scene, &rays, &arguments);
+  rtcIntersect8(valid, scene, &rays, &arguments);
 }
 inline void occluded(RTCScene scene, Query& query, const int* valid, RayPacket& rays) {
   RTCOccludedArguments arguments = occluded_arguments(query);
-  rtcOccluded16(valid, scene, &rays, &arguments);
+  rtcOccluded8(valid, scene, &rays, &arguments);
 }
 
 #else
 
 inline void intersect(RTCScene scene, Query& query, const int* valid, RayHitPacket& rays) {
-  rtcIntersect16(valid, scene, &query.context, &rays);
+  rtcIntersect8(valid, scene, &query.context, &rays);
 }
 inline void occluded(RTCScene scene, Query& query, const int* valid, RayPacket& rays) {
-  rtcOccluded16(valid, scene, &query.context, &rays);
+  rtcOccluded8(valid, scene, &query.context, &rays);
 }
 
 #endif

@@ -2,7 +2,10 @@
 // Exact effects on the processor: Whitted ray tracing of the scene's triangles with Embree.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include "scene/rt_scene.h"
+#include "tracers/embree/tile_tracer.h"
 #include "tracers/tracer.h"
 
 namespace kestrel {
@@ -13,10 +16,11 @@ class EmbreeTracer : public Tracer {
   explicit EmbreeTracer(const RtScene& scene) : scene_(scene) {}
 
   /// Tiles in parallel; the result does not depend on how many threads there are.
-  void trace(const TraceRequest& request, EffectBuffers& effects) override;
+  void trace(const TraceRequest& request, EffectBuffers& effects, TraceCounts& counts) override;
 
  private:
   const RtScene& scene_;
+  tbb::enumerable_thread_specific<TileTracer::Buffers> buffers_;
 };
 
 }  // namespace kestrel

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracers/embree/primary_rays.h"
 
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
-
 #include "frame/camera_rays.h"
+#include "frame/region_loops.h"
 #include "shading/shading.h"
 #include "shading/texture.h"
 
 namespace kestrel {
 namespace {
 
-/// Pixels of one packet.
+/// Pixels of one packet; tiles hold whole ones but at the picture's edges.
 constexpr int kPacketWidth = 4;
 constexpr int kPacketHeight = embree::kPacket / kPacketWidth;
-constexpr int kTile = 32;
 
 void store_miss(const Scene& scene, const CameraRay& ray, size_t i, GBuffer& out) {
   out.position[i] = out.normal[i] = out.normal_geometric[i] = vec3(0.0f);
@@ -76,23 +73,18 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
 }  // namespace
 
 uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
-  out.resize(inputs.width, inputs.rows);
+  const Region& region = inputs.region;
+  out.resize(region.width, region.height);
   const CameraRays camera(inputs);
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, inputs.rows, kTile, 0, inputs.width, kTile),
-                    [&](const tbb::blocked_range2d<int>& tile) {
-                      // Packets start at multiples of their size however the range was split.
-                      const auto first = [](int begin, int size) {
-                        return (begin + size - 1) / size * size;
-                      };
-                      for (int y = first(tile.rows().begin(), kPacketHeight); y < tile.rows().end();
-                           y += kPacketHeight) {
-                        for (int x = first(tile.cols().begin(), kPacketWidth);
-                             x < tile.cols().end(); x += kPacketWidth) {
-                          trace_packet(scene_, camera, x, y, out);
-                        }
-                      }
-                    });
-  return inputs.pixels();
+  for_tiles(region, [&](const Region& tile) {
+    const int x0 = tile.x - region.x, y0 = tile.y - region.y;
+    for (int y = y0; y < y0 + tile.height; y += kPacketHeight) {
+      for (int x = x0; x < x0 + tile.width; x += kPacketWidth) {
+        trace_packet(scene_, camera, x, y, out);
+      }
+    }
+  });
+  return region.pixels();
 }
 
 }  // namespace kestrel

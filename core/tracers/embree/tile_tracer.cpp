@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "frame/region_loops.h"
 #include "shading/optics.h"
 #include "shading/shading.h"
 #include "shading/texture.h"
@@ -21,25 +22,45 @@ vec3 leave_surface(const vec3& position, const vec3& normal, float travelled) {
 
 }  // namespace
 
-TileTracer::TileTracer(const TraceRequest& request, const RtScene& scene, EffectBuffers& effects)
+TileTracer::TileTracer(const TraceRequest& request, const RtScene& scene, Buffers& buffers,
+                       EffectBuffers& effects)
     : request_(request),
       rt_(scene),
       scene_(scene.scene()),
       effects_(effects),
       camera_(request.inputs),
-      rays_by_unit_(scene_.units.size(), 0) {}
+      pixels_(buffers.pixels),
+      paths_(buffers.paths),
+      next_reflected_(buffers.next_reflected),
+      next_refracted_(buffers.next_refracted),
+      lit_(buffers.lit),
+      hits_(buffers.hits),
+      shadows_(buffers.shadows),
+      rays_by_unit_(buffers.rays_by_unit),
+      units_(buffers.units) {
+  rays_by_unit_.resize(scene_.units.size(), 0);
+  for (const uint32_t unit : units_) rays_by_unit_[unit] = 0;
+  units_.clear();
+}
 
 void TileTracer::count(uint32_t unit, uint64_t& kind) {
   ++kind;
-  ++rays_by_unit_[unit];
+  if (rays_by_unit_[unit]++ == 0) units_.push_back(unit);
+}
+
+void TileTracer::add_counts(TraceCounts& counts) const {
+  counts.rays += rays_;
+  counts.trace_calls_ms += trace_calls_ms_;
+  counts.rays_by_unit.resize(scene_.units.size(), 0);
+  for (const uint32_t unit : units_) counts.rays_by_unit[unit] += rays_by_unit_[unit];
 }
 
 uint32_t TileTracer::unit_of(uint32_t pixel) const {
   return static_cast<uint32_t>(scene_.objects[request_.gbuffer.object[pixel] - 1].unit);
 }
 
-void TileTracer::trace(int x0, int y0) {
-  gather_pixels(x0, y0);
+void TileTracer::trace(const Region& tile) {
+  gather_pixels(tile);
   if (pixels_.empty()) return;
   trace_primary_shadows();
   start_paths();
@@ -47,18 +68,17 @@ void TileTracer::trace(int x0, int y0) {
 }
 
 /// In blocks of 4 x 4, so that a packet's rays stay close together.
-void TileTracer::gather_pixels(int x0, int y0) {
-  constexpr int kBlock = 4, kBlocks = kSize / kBlock;
+void TileTracer::gather_pixels(const Region& tile) {
+  constexpr int kBlock = 4, kBlocks = kTileSize / kBlock;
   pixels_.clear();
-  const GBuffer& g = request_.gbuffer;
   const int stride = request_.pixel_stride;
-  for (int i = 0; i < kSize * kSize; ++i) {
+  for (int i = 0; i < kTileSize * kTileSize; ++i) {
     const int block = i / (kBlock * kBlock), within = i % (kBlock * kBlock);
-    const int x = x0 + block % kBlocks * kBlock + within % kBlock;
-    const int y = y0 + block / kBlocks * kBlock + within / kBlock;
-    if (x < g.width && y < g.height && x % stride == 0 && y % stride == 0) {
-      gather_pixel(static_cast<uint32_t>(y) * static_cast<uint32_t>(g.width) + x);
-    }
+    const int x = block % kBlocks * kBlock + within % kBlock;
+    const int y = block / kBlocks * kBlock + within / kBlock;
+    if (x >= tile.width || y >= tile.height) continue;
+    if ((tile.x + x) % stride != 0 || (tile.y + y) % stride != 0) continue;
+    gather_pixel(static_cast<uint32_t>((tile.y + y) * request_.gbuffer.width + tile.x + x));
   }
 }
 

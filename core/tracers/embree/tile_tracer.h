@@ -15,16 +15,18 @@ namespace kestrel {
 
 class TileTracer {
  public:
-  static constexpr int kSize = 32;  // pixels
+  /// Memory that one tile after the other uses.
+  class Buffers;
 
-  TileTracer(const TraceRequest& request, const RtScene& scene, EffectBuffers& effects);
+  /// All must outlive it.
+  TileTracer(const TraceRequest& request, const RtScene& scene, Buffers& buffers,
+             EffectBuffers& effects);
 
-  /// The tile whose lower left pixel is (x0, y0).
-  void trace(int x0, int y0);
+  /// A tile of at most kTileSize, in pixels of the request's region.
+  void trace(const Region& tile);
 
-  const RayCounts& rays() const { return rays_; }
-  double trace_calls_ms() const { return trace_calls_ms_; }
-  const std::vector<uint64_t>& rays_by_unit() const { return rays_by_unit_; }
+  /// Adds what the traced tile took.
+  void add_counts(TraceCounts& counts) const;
 
  private:
   /// A reflection or refraction ray on its way.
@@ -58,7 +60,7 @@ class TileTracer {
     float transparency = 0.0f;
   };
 
-  void gather_pixels(int x0, int y0);
+  void gather_pixels(const Region& tile);
   void gather_pixel(uint32_t index);
   void trace_primary_shadows();
   void start_paths();
@@ -81,16 +83,30 @@ class TileTracer {
   EffectBuffers& effects_;
   CameraRays camera_;
 
-  std::vector<Pixel> pixels_;
-  std::vector<Path> paths_;
-  std::vector<Path> next_reflected_;
-  std::vector<Path> next_refracted_;
-  std::vector<Hit> lit_;
-  std::vector<embree::RayHitPacket> hits_;
-  ShadowQueue shadows_;
+  std::vector<Pixel>& pixels_;
+  std::vector<Path>& paths_;
+  std::vector<Path>& next_reflected_;
+  std::vector<Path>& next_refracted_;
+  std::vector<Hit>& lit_;
+  std::vector<embree::RayHitPacket>& hits_;
+  ShadowQueue& shadows_;
+  std::vector<uint64_t>& rays_by_unit_;  // 0 outside units_
+  std::vector<uint32_t>& units_;         // that rays were started for
   RayCounts rays_;
   double trace_calls_ms_ = 0.0;
-  std::vector<uint64_t> rays_by_unit_;
+};
+
+class TileTracer::Buffers {
+  friend class TileTracer;
+  std::vector<Pixel> pixels;
+  std::vector<Path> paths;
+  std::vector<Path> next_reflected;
+  std::vector<Path> next_refracted;
+  std::vector<Hit> lit;
+  std::vector<embree::RayHitPacket> hits;
+  ShadowQueue shadows;
+  std::vector<uint64_t> rays_by_unit;
+  std::vector<uint32_t> units;
 };
 
 }  // namespace kestrel
