@@ -313,7 +313,8 @@ void Renderer::Impl::report(float sample_share) {
     return;
   }
   const int samples = scene->settings.samples;
-  const float share = (static_cast<float>(samples_done) + sample_share) / static_cast<float>(samples);
+  const float share =
+      (static_cast<float>(samples_done) + sample_share) / static_cast<float>(samples);
   if (!(*progress)(share, fmt::format("Sample {}/{}", samples_done + 1, samples))) {
     cancel_requested = true;
   }

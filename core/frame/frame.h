@@ -27,10 +27,10 @@ struct Region {
 /// their data stays in the processor's cache, on a tile of it.
 struct FrameInputs {
   const Scene& scene;
-  int width;               // of the picture, pixels
-  int height;              // of the picture, pixels
-  vec2 subpixel{0.0f};     // sample position, offset from the pixel's centre, in pixels
-  float budget_ms = 0.0f;  // T for this sample: the frame's share; 0 means no limit
+  int width;                           // of the picture, pixels
+  int height;                          // of the picture, pixels
+  vec2 subpixel{0.0f};                 // sample position, offset from the pixel's centre, in pixels
+  float budget_ms = 0.0f;              // T for this sample: the frame's share; 0 means no limit
   Region region{0, 0, width, height};  // what is rendered now; the planes have its size
 };
 

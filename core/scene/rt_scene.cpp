@@ -47,9 +47,8 @@ SurfaceHit RtScene::resolve(unsigned instance, unsigned geometry, unsigned primi
     return {static_objects_[slot], static_geometry_[slot].triangle(filtered, primitive),
             barycentric};
   }
-  const int object = instances_[instance];
-  const Instanced& mesh = instanced_.at(scene_->meshes[scene_->objects[object].mesh].get());
-  return {object, mesh.geometry.triangle(filtered, primitive), barycentric};
+  const Instance& instanced = instances_[instance];
+  return {instanced.object, instanced.geometry->triangle(filtered, primitive), barycentric};
 }
 
 /// Counts who uses each mesh, and finds the slots whose material, in any of them, needs a filter
@@ -135,7 +134,7 @@ void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
 
 void RtScene::build_top(const std::vector<int>& static_objects) {
   top_.reset();
-  instances_.assign(1, kNone);
+  instances_.assign(1, {kNone, nullptr});
   if (static_objects.size() == scene_->objects.size()) return;
   top_ = new_scene(device_);
   attach_instance(device_, top_.get(), static_.get(), mat4x3(1.0f), 0);
@@ -143,10 +142,10 @@ void RtScene::build_top(const std::vector<int>& static_objects) {
   for (size_t i = 0; i < scene_->objects.size(); ++i) {
     if (in_static.contains(static_cast<int>(i))) continue;
     const Object& object = scene_->objects[i];
-    attach_instance(device_, top_.get(),
-                    instanced_.at(scene_->meshes[object.mesh].get()).scene.get(),
-                    object.world_from_object, static_cast<unsigned>(instances_.size()));
-    instances_.push_back(static_cast<int>(i));
+    const Instanced& mesh = instanced_.at(scene_->meshes[object.mesh].get());
+    attach_instance(device_, top_.get(), mesh.scene.get(), object.world_from_object,
+                    static_cast<unsigned>(instances_.size()));
+    instances_.push_back({static_cast<int>(i), &mesh.geometry});
   }
   rtcCommitScene(top_.get());
 }

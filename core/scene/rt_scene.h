@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -31,8 +32,8 @@ class RtScene {
   SurfaceHit resolve(unsigned instance, unsigned geometry, unsigned primitive,
                      const vec2& barycentric) const;
 
-  /// Inverse transpose of an object's matrix.
-  const mat3& normal_from_object(int object) const { return normal_from_object_[object]; }
+  /// Inverse transpose of every object's matrix.
+  std::span<const mat3> normal_from_object() const { return normal_from_object_; }
 
  private:
   /// An object of the static part as it was built.
@@ -69,8 +70,12 @@ class RtScene {
   std::unordered_set<std::string> moving_;  // names of objects that moved once
 
   std::unordered_map<const Mesh*, Instanced> instanced_;
-  embree::SceneHandle top_;     // null where everything is static
-  std::vector<int> instances_;  // object by instance id; [0] is the static part
+  embree::SceneHandle top_;  // null where everything is static
+  struct Instance {
+    int object;
+    const RtMesh* geometry;
+  };
+  std::vector<Instance> instances_;  // by instance id; [0] is the static part
 };
 
 }  // namespace kestrel

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shading/surface.h"
 
+#include <cassert>
+#include <optional>
+
 #include "shading/texture.h"
 
 namespace kestrel {
@@ -57,13 +60,49 @@ void apply_alpha(const Scene& scene, const Material& material, Surface& s) {
   s.optical.z *= s.diffuse.w;
 }
 
-}  // namespace
+/// A hit with what it refers to.
+struct Point {
+  SurfaceHit hit;
+  const Object& object;
+  const Mesh& mesh;
+  const Material& material;
+  vec2 uv;  // of its textures
+};
 
-Surface evaluate_surface(const Scene& scene, const SurfaceHit& hit,
-                         const mat3& normal_from_object) {
+template <typename T>
+void prefetch(const std::vector<T>& items, size_t index) {
+  if (index < items.size()) __builtin_prefetch(&items[index]);
+}
+
+/// Asks for what find_point() and evaluate() are going to read.
+void prefetch_geometry(const Scene& scene, const SurfaceHit& hit) {
+  const Mesh& mesh = *scene.meshes[scene.objects[hit.object].mesh];
+  prefetch(mesh.triangles, hit.triangle);
+  prefetch(mesh.triangle_materials, hit.triangle);
+  prefetch(mesh.corner_uvs, 3 * static_cast<size_t>(hit.triangle));
+  prefetch(mesh.corner_normals, 3 * static_cast<size_t>(hit.triangle));
+}
+
+/// Also asks for the vertices and texels that evaluate() is going to read.
+Point find_point(const Scene& scene, const SurfaceHit& hit) {
   const Object& object = scene.objects[hit.object];
   const Mesh& mesh = *scene.meshes[object.mesh];
   const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
+  const Point point{hit, object, mesh, material, texture_uv(mesh, material, hit)};
+  const uvec3& triangle = mesh.triangles[hit.triangle];
+  for (int c = 0; c < 3; ++c) prefetch(mesh.positions, triangle[c]);
+  for (const int texture : {material.diffuse_texture, material.normal_texture,
+                            material.specular_texture, material.optical_texture}) {
+    if (texture != kNone) prefetch_texels(*scene.textures[texture], point.uv);
+  }
+  if (material.normal_texture != kNone) {
+    prefetch(mesh.corner_tangents, 3 * static_cast<size_t>(hit.triangle));
+  }
+  return point;
+}
+
+Surface evaluate(const Scene& scene, const Point& point, const mat3& normal_from_object) {
+  const auto& [hit, object, mesh, material, uv] = point;
   const uvec3& triangle = mesh.triangles[hit.triangle];
   const vec3& a = mesh.positions[triangle.x];
   const vec3& b = mesh.positions[triangle.y];
@@ -78,7 +117,6 @@ Surface evaluate_surface(const Scene& scene, const SurfaceHit& hit,
   if (!mesh.corner_normals.empty()) {
     s.normal = safe_normalize(normal_from_object * interpolate(mesh.corner_normals, hit), s.normal);
   }
-  const vec2 uv = texture_uv(mesh, material, hit);
   if (material.normal_texture != kNone && !mesh.corner_tangents.empty()) {
     s.normal = mapped_normal(scene, mesh, material, hit, uv, normal_from_object,
                              object.world_from_object, s.normal);
@@ -95,6 +133,19 @@ Surface evaluate_surface(const Scene& scene, const SurfaceHit& hit,
   s.transmission_color = material.transmission_color;
   apply_alpha(scene, material, s);
   return s;
+}
+
+}  // namespace
+
+void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_object,
+                       std::span<const SurfaceHit> hits, Surface* out) {
+  assert(hits.size() <= kMaxHits);
+  for (const SurfaceHit& hit : hits) prefetch_geometry(scene, hit);
+  std::optional<Point> points[kMaxHits];
+  for (size_t i = 0; i < hits.size(); ++i) points[i].emplace(find_point(scene, hits[i]));
+  for (size_t i = 0; i < hits.size(); ++i) {
+    out[i] = evaluate(scene, *points[i], normal_from_object[hits[i].object]);
+  }
 }
 
 float evaluate_alpha(const Scene& scene, const Object& object, const SurfaceHit& hit) {

@@ -2,6 +2,8 @@
 // A point on a surface with its material evaluated: what shading needs, wherever it came from.
 #pragma once
 
+#include <span>
+
 #include "scene/scene.h"
 
 namespace kestrel {
@@ -33,9 +35,13 @@ inline int material_of(const Scene& scene, const Object& object, uint32_t triang
   return object.materials[glm::min<size_t>(slot, object.materials.size() - 1)];
 }
 
-/// Interpolates and evaluates the material. `normal_from_object` is the inverse transpose of the
-/// object's matrix. Tangent space is listing 2's, with an orthogonal tangent.
-Surface evaluate_surface(const Scene& scene, const SurfaceHit& hit, const mat3& normal_from_object);
+/// Interpolates and evaluates the materials of up to kMaxHits hits. Tangent space is listing 2's,
+/// with an orthogonal tangent. `normal_from_object`: the inverse transpose of every object's
+/// matrix. Several hits together take less time than one after the other: their geometry and
+/// texels come from memory side by side.
+inline constexpr size_t kMaxHits = 8;
+void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_object,
+                       std::span<const SurfaceHit> hits, Surface* out);
 
 /// Diffuse alpha at a hit, before the alpha mode: colour times texture.
 float evaluate_alpha(const Scene& scene, const Object& object, const SurfaceHit& hit);

@@ -86,6 +86,21 @@ vec4 sample_texture(const Texture& t, const vec2& uv) {
   return sample(t, uv, t.extension, t.extension);
 }
 
+void prefetch_texels(const Texture& t, const vec2& uv) {
+  if (t.width <= 0 || t.height <= 0 || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return;
+  const int x = floor_to_int(texel_coordinate(uv.x, t.width, t.extension) - 0.5f);
+  const int y = floor_to_int(texel_coordinate(uv.y, t.height, t.extension) - 0.5f);
+  const int column = glm::clamp(x, 0, t.width - 1);
+  for (int row = glm::max(y, 0); row <= glm::min(y + 1, t.height - 1); ++row) {
+    const size_t i = static_cast<size_t>(row) * static_cast<size_t>(t.width) + column;
+    if (t.texels_float.empty()) {
+      __builtin_prefetch(&t.texels8[static_cast<size_t>(t.channels8) * i]);
+    } else {
+      __builtin_prefetch(&t.texels_float[4 * i]);
+    }
+  }
+}
+
 vec3 sample_world(const Scene& scene, const vec3& direction_ws) {
   const World& world = scene.world;
   if (world.kind == WorldKind::color) return world.color;

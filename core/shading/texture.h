@@ -10,6 +10,9 @@ namespace kestrel {
 /// of texel row 0; outside 0…1 the texture's extension decides. An empty texture gives white.
 vec4 sample_texture(const Texture& texture, const vec2& uv);
 
+/// Asks the processor for the texels of a later sample_texture(): it need not wait for them then.
+void prefetch_texels(const Texture& texture, const vec2& uv);
+
 /// Radiance of the world seen along a unit direction in world space.
 vec3 sample_world(const Scene& scene, const vec3& direction_ws);
 

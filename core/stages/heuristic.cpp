@@ -157,8 +157,7 @@ void count_areas(const FrameInputs& inputs, const GBuffer& gbuffer, Areas& areas
   }
 }
 
-void write_heuristic_mask(const FrameInputs& inputs, const Selection& selection,
-                          GBuffer& gbuffer) {
+void write_heuristic_mask(const FrameInputs& inputs, const Selection& selection, GBuffer& gbuffer) {
   gbuffer.heuristic_mask.resize(gbuffer.object.size());
   const size_t width = static_cast<size_t>(inputs.region.width);
   for_rows(inputs.region, [&](int y) {

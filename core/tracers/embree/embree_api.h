@@ -20,6 +20,15 @@ inline constexpr int kPacket = 8;
 using RayPacket = RTCRay8;
 using RayHitPacket = RTCRayHit8;
 
+/// Embree's mask of the lanes in use: the first `count`, or all.
+struct ValidLanes {
+  alignas(64) int mask[kPacket];
+
+  explicit ValidLanes(size_t count) {
+    for (size_t lane = 0; lane < kPacket; ++lane) mask[lane] = lane < count ? -1 : 0;
+  }
+};
+
 /// Fills one ray of a packet; filter functions see its `id`.
 inline void set_ray(RayPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
                     float t_near, float t_far, size_t id) {

@@ -8,8 +8,7 @@
 
 namespace kestrel {
 
-void EmbreeTracer::trace(const TraceRequest& request, EffectBuffers& effects,
-                         TraceCounts& counts) {
+void EmbreeTracer::trace(const TraceRequest& request, EffectBuffers& effects, TraceCounts& counts) {
   const Region& region = request.inputs.region;
   const float tiles = static_cast<float>(tile_count(region));
   std::atomic<int> done = 0;

@@ -5,6 +5,7 @@
 #include "frame/region_loops.h"
 #include "shading/shading.h"
 #include "shading/texture.h"
+#include "tracers/embree/packet_surfaces.h"
 
 namespace kestrel {
 namespace {
@@ -22,10 +23,8 @@ void store_miss(const Scene& scene, const CameraRay& ray, size_t i, GBuffer& out
   out.lighting[i] = sample_world(scene, ray.direction);
 }
 
-void store_hit(const RtScene& rt, const CameraRays& camera, const SurfaceHit& hit, size_t i,
-               GBuffer& out) {
-  const Scene& scene = rt.scene();
-  Surface s = evaluate_surface(scene, hit, rt.normal_from_object(hit.object));
+void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& hit, Surface s,
+               size_t i, GBuffer& out) {
   out.position[i] = s.position;
   out.normal[i] = s.normal;
   out.normal_geometric[i] = s.normal_geometric;
@@ -55,6 +54,8 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
   }
   embree::Query query;
   embree::intersect(rt.handle(), query, valid, packet);
+  embree::PacketSurfaces met(rt, valid, packet);
+  size_t next = 0;
   for (int lane = 0; lane < embree::kPacket; ++lane) {
     if (valid[lane] == 0) continue;
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
@@ -62,10 +63,8 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
       store_miss(rt.scene(), rays[lane], i, out);
     } else {
-      store_hit(rt, camera,
-                rt.resolve(packet.hit.instID[0][lane], packet.hit.geomID[lane],
-                           packet.hit.primID[lane], vec2(packet.hit.u[lane], packet.hit.v[lane])),
-                i, out);
+      store_hit(rt.scene(), camera, met.hits[next], met.surfaces[next], i, out);
+      ++next;
     }
   }
 }

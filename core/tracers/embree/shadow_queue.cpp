@@ -18,11 +18,8 @@ double ShadowQueue::trace(const RtScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
   embree::ShadowQuery query(states_.data());
   for (size_t p = 0; p < packets_.size(); ++p) {
-    alignas(64) int valid[embree::kPacket];
-    for (size_t lane = 0; lane < embree::kPacket; ++lane) {
-      valid[lane] = embree::kPacket * p + lane < tasks_.size() ? -1 : 0;
-    }
-    embree::occluded(scene.handle(), query, valid, packets_[p]);
+    const embree::ValidLanes valid(tasks_.size() - embree::kPacket * p);
+    embree::occluded(scene.handle(), query, valid.mask, packets_[p]);
   }
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
       .count();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tracers/embree/tile_tracer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "shading/shading.h"
 #include "shading/texture.h"
 #include "stages/blend.h"
+#include "tracers/embree/packet_surfaces.h"
 
 namespace kestrel {
 namespace {
@@ -186,31 +188,34 @@ void TileTracer::trace_depth() {
   const auto begin = std::chrono::steady_clock::now();
   embree::Query query;
   for (size_t p = 0; p < hits_.size(); ++p) {
-    alignas(64) int valid[kPacket];
-    for (size_t lane = 0; lane < kPacket; ++lane) {
-      valid[lane] = kPacket * p + lane < paths_.size() ? -1 : 0;
-    }
-    embree::intersect(rt_.handle(), query, valid, hits_[p]);
+    const embree::ValidLanes valid(paths_.size() - kPacket * p);
+    embree::intersect(rt_.handle(), query, valid.mask, hits_[p]);
   }
   trace_calls_ms_ +=
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 
-  for (size_t i = 0; i < paths_.size(); ++i) shade_hit(paths_[i], hits_[i / kPacket], i % kPacket);
+  for (size_t p = 0; p < hits_.size(); ++p) shade_packet(kPacket * p, hits_[p]);
   light_hits();
   take_next_paths();
 }
 
-void TileTracer::shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane) {
-  vec3& sum = sum_of(path.pixel, path.reflected);
-  if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
-    sum += path.throughput * sample_world(scene_, path.direction);
-    return;
+/// `first`: the path of the packet's first lane.
+void TileTracer::shade_packet(size_t first, const embree::RayHitPacket& packet) {
+  const size_t count = std::min<size_t>(embree::kPacket, paths_.size() - first);
+  const embree::PacketSurfaces met(rt_, embree::ValidLanes(count).mask, packet);
+  size_t next = 0;
+  for (size_t lane = 0; lane < count; ++lane) {
+    const Path& path = paths_[first + lane];
+    if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
+      sum_of(path.pixel, path.reflected) += path.throughput * sample_world(scene_, path.direction);
+    } else {
+      shade_hit(path, met.surfaces[next++], packet.ray.tfar[lane]);
+    }
   }
-  const SurfaceHit hit =
-      rt_.resolve(packet.hit.instID[0][lane], packet.hit.geomID[lane], packet.hit.primID[lane],
-                  vec2(packet.hit.u[lane], packet.hit.v[lane]));
-  Surface s = evaluate_surface(scene_, hit, rt_.normal_from_object(hit.object));
-  const float distance = packet.ray.tfar[lane];
+}
+
+/// `distance`: that the ray travelled, metres.
+void TileTracer::shade_hit(const Path& path, Surface s, float distance) {
   const bool entering = glm::dot(s.normal_geometric, path.direction) < 0.0f;
   const vec3 to_viewer = -path.direction;
   face_viewer(s, to_viewer);
@@ -223,7 +228,7 @@ void TileTracer::shade_hit(const Path& path, const embree::RayHitPacket& packet,
     spawn(path, s, entering, distance, w.reflection, w.refraction, reflectivity, transparency);
   }
   if (w.surface > 0.0f) {
-    sum += path.throughput * w.surface * unlit(scene_.settings, s);
+    sum_of(path.pixel, path.reflected) += path.throughput * w.surface * unlit(scene_.settings, s);
     lit_.push_back(
         {s, to_viewer, path.throughput * w.surface, distance, path.pixel, path.reflected});
   }

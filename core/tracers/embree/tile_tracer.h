@@ -65,7 +65,8 @@ class TileTracer {
   void trace_primary_shadows();
   void start_paths();
   void trace_depth();
-  void shade_hit(const Path& path, const embree::RayHitPacket& packet, size_t lane);
+  void shade_packet(size_t first, const embree::RayHitPacket& packet);
+  void shade_hit(const Path& path, Surface surface, float distance);
   void light_hits();
   void take_next_paths();
   void spawn(const Path& from, const Surface& facing, bool entering, float distance,
