@@ -14,10 +14,16 @@ struct ShadowState {
   /// one object at practically the same distance count as one.
   static constexpr uint32_t kRemembered = 8;
 
-  vec3 transmitted{1.0f};
-  uint32_t crossings = 0;
+  vec3 transmitted;
+  uint32_t crossings;
   float distances[kRemembered];
   int objects[kRemembered];
+
+  /// Before the ray starts.
+  void reset() {
+    transmitted = vec3(1.0f);
+    crossings = 0;
+  }
 
   /// Whether this crossing is new; remembers it.
   bool enter(int object, float distance) {

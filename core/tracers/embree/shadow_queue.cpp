@@ -14,7 +14,8 @@ void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance
 }
 
 double ShadowQueue::trace(const RtScene& scene) {
-  states_.assign(tasks_.size(), embree::ShadowState());
+  if (states_.size() < tasks_.size()) states_.resize(tasks_.size());
+  for (size_t i = 0; i < tasks_.size(); ++i) states_[i].reset();
   const auto begin = std::chrono::steady_clock::now();
   embree::ShadowQuery query(states_.data());
   for (size_t p = 0; p < packets_.size(); ++p) {
