@@ -4,6 +4,8 @@
 Each function looks at what the object at hand offers instead of comparing version numbers.
 """
 
+import ctypes
+
 import numpy as np
 
 INT, FLOAT = np.int32, np.float32
@@ -41,32 +43,84 @@ def vertex_positions(mesh):
     return values.reshape(count, 3)
 
 
+def _stored_ints(collection, name):
+    """int32 (N,): a property of every item, read where Blender keeps the items in one block of
+    equal records; None where that cannot be made sure of.
+
+    Asking for a value item by item takes 50 ns each, this 1. The field is the one whose values are
+    those that Blender gives for a sample of the items.
+    """
+    count = len(collection)
+    if count < 64:
+        return None
+    first, second = (collection[i].as_pointer() for i in range(2))
+    stride = second - first
+    if not 4 <= stride <= 64 or stride % 4:
+        return None
+    places = np.linspace(0, count - 1, 32).astype(np.int64)
+    sample = [collection[int(i)] for i in places]
+    if any(item.as_pointer() != first + int(i) * stride for i, item in zip(places, sample)):
+        return None
+    block = (ctypes.c_int32 * (count * stride // 4)).from_address(first)
+    records = np.frombuffer(block, INT).reshape(count, stride // 4)
+    values = np.array([getattr(item, name) for item in sample], INT)
+    fields = np.flatnonzero((records[places] == values[:, None]).all(axis=0))
+    return records[:, fields[0]].copy() if len(fields) == 1 else None
+
+
+def _ints(collection, name):
+    """int32 (N,): a property of every item."""
+    values = _stored_ints(collection, name)
+    if values is None:
+        values = np.empty(len(collection), INT)
+        collection.foreach_get(name, values)
+    return values
+
+
 def corner_vertices(mesh):
     """int32 (C,): the vertex of each corner."""
-    count = len(mesh.loops)
-    values = _attribute(mesh, ".corner_vert", "value", 1, count, INT)
-    if values is None:
-        values = np.empty(count, INT)
-        mesh.loops.foreach_get("vertex_index", values)
-    return values.reshape(count)
+    values = _attribute(mesh, ".corner_vert", "value", 1, len(mesh.loops), INT)
+    return _ints(mesh.loops, "vertex_index") if values is None else values.reshape(-1)
+
+
+def corner_totals(mesh):
+    """int32 (P,): how many corners each polygon has."""
+    return _ints(mesh.polygons, "loop_total")
+
+
+def _vectors(items, channel="vector"):
+    values = np.empty(3 * len(items), FLOAT)
+    items.foreach_get(channel, values)
+    return values.reshape(-1, 3)
+
+
+def _unsplit_normals(mesh):
+    """Corner normals until 4.0 where nothing splits them: those of the vertices, and on flat
+    polygons the polygon's. None where every face is flat."""
+    smooth = np.empty(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("use_smooth", smooth)
+    if not smooth.any():
+        return None
+    values = _vectors(mesh.vertex_normals)[corner_vertices(mesh)]
+    if not smooth.all():
+        totals = corner_totals(mesh)
+        flat = ~np.repeat(smooth, totals)
+        values[flat] = np.repeat(_vectors(mesh.polygon_normals), totals, axis=0)[flat]
+    return values
 
 
 def corner_normals(mesh):
     """float32 (C, 3), object space; None where every face is flat."""
-    values = np.empty(3 * len(mesh.loops), FLOAT)
     if hasattr(mesh, "corner_normals"):  # 4.1 on
-        if mesh.normals_domain == "FACE":
-            return None
-        mesh.corner_normals.foreach_get("vector", values)
-    else:
-        smooth = np.empty(len(mesh.polygons), bool)
-        mesh.polygons.foreach_get("use_smooth", smooth)
-        if not smooth.any() and not mesh.has_custom_normals:
-            return None
+        return None if mesh.normals_domain == "FACE" else _vectors(mesh.corner_normals)
+    if not mesh.use_auto_smooth:  # then Blender ignores custom normals
+        return _unsplit_normals(mesh)
+    values = _vectors(mesh.loops, "normal")  # zeros unless the evaluation has worked them out
+    if not values.any():
         mesh.calc_normals_split()
-        mesh.loops.foreach_get("normal", values)
+        values = _vectors(mesh.loops, "normal")
         mesh.free_normals_split()
-    return values.reshape(-1, 3)
+    return values
 
 
 def corner_uvs(layer):

@@ -6,7 +6,7 @@ import unittest.mock
 
 import bpy
 import numpy as np
-from kestrel import session
+from kestrel import compat, session
 from kestrel.sync import object as sync_object
 from mathutils import Matrix
 from support import SceneTest, diffuse, emission, new_material, turned
@@ -271,6 +271,38 @@ class AgainTest(SceneTest):
         self.render()
         core = next(iter(session._sessions.values()))
         self.assertEqual(len([key for key in core.sent if key[0] == 0]), 2)
+
+    def test_corner_arrays_are_those_that_blender_gives_corner_by_corner(self):
+        def add(name, smooth, split, modifier):
+            bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8)
+            obj = bpy.context.object
+            obj.name = name
+            for polygon in obj.data.polygons:
+                polygon.use_smooth = smooth(polygon.index)
+            if hasattr(obj.data, "use_auto_smooth"):  # until 4.0
+                obj.data.use_auto_smooth = split
+            if modifier:
+                obj.modifiers.new(modifier, modifier)
+            return obj
+        cases = [add("Smooth", lambda _: True, False, None),
+                 add("Flat", lambda _: False, False, None),
+                 add("Mixed", lambda i: i % 3 > 0, False, "SUBSURF"),
+                 add("Split", lambda i: i % 2 > 0, True, "ARRAY")]
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        for obj in cases:
+            mesh = obj.evaluated_get(depsgraph).data
+            normals = compat.corner_normals(mesh)
+            self.assertEqual(compat.corner_vertices(mesh).tolist(),
+                             [loop.vertex_index for loop in mesh.loops])
+            self.assertEqual(compat.corner_totals(mesh).tolist(),
+                             [polygon.loop_total for polygon in mesh.polygons])
+            if obj.name == "Flat":
+                self.assertIsNone(normals)
+                continue
+            if hasattr(mesh, "calc_normals_split"):
+                mesh.calc_normals_split()
+            expected = [tuple(loop.normal) for loop in mesh.loops]
+            np.testing.assert_allclose(normals, expected, atol=1e-6)
 
     def test_unchanged_is_not_sent_again(self):
         self.light("POINT", 10)

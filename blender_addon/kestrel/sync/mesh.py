@@ -15,9 +15,7 @@ def triangulate(mesh):
     """(corner, polygon) indices of every triangle: int32 (3T,) and (T,), or None and None where
     each polygon is a triangle already."""
     if 3 * len(mesh.polygons) == len(mesh.loops):
-        totals = np.empty(len(mesh.polygons), np.int32)
-        mesh.polygons.foreach_get("loop_total", totals)
-        if (totals == 3).all():
+        if (compat.corner_totals(mesh) == 3).all():
             return None, None
     mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
@@ -40,7 +38,7 @@ def arrays(mesh, slot_count):
             return None
         return values if corners is None else np.take(values, corners, axis=0)
 
-    triangles = per_corner(compat.corner_vertices(mesh)).astype(np.uint32).reshape(-1, 3)
+    triangles = per_corner(compat.corner_vertices(mesh)).view(np.uint32).reshape(-1, 3)
     layer = render_uv_layer(mesh)
     uvs = per_corner(compat.corner_uvs(layer)) if layer else None
     slots = compat.polygon_materials(mesh) if slot_count > 1 else None
