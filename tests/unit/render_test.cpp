@@ -346,6 +346,21 @@ TEST(Render, SameBitsWhateverTheNumberOfThreads) {
   }
 }
 
+TEST(Render, AmpleBudgetGivesTheSamePicture) {
+  // With a budget the stages see the whole picture at once, without one tile after tile.
+  SceneMaker s = crowd();
+  const Picture tiles(s, 97, 61);
+  s.scene = std::make_shared<Scene>(*s.scene);
+  s.scene->settings.budget_ms = 1e9f;
+  const Picture whole(s, 97, 61);
+  for (const char* pass : {"Combined", "Position", "ObjectId", "HeuristicMask", "Refraction"}) {
+    EXPECT_EQ(tiles.renderer->film().pass(pass), whole.renderer->film().pass(pass)) << pass;
+  }
+  for (size_t i = 0; i < tiles.stats()["objects"].size(); ++i) {
+    EXPECT_EQ(tiles.stats()["objects"][i]["area_px"], whole.stats()["objects"][i]["area_px"]);
+  }
+}
+
 TEST(Render, EveryPixelIsTracedOnce) {
   // Tiles share their workers' queues: what one leaves behind must not reach the next.
   SceneMaker s = crowd();
