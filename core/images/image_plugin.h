@@ -8,17 +8,22 @@
 
 extern "C" {
 
-#define KESTREL_IMAGE_PLUGIN_ABI 1
+#define KESTREL_IMAGE_PLUGIN_ABI 2
 
-/// A decoded image; freed with free_image. Row 0 at the bottom, RGBA, straight alpha; 8-bit texels
-/// where the file has 8 bits a channel, else float; both as stored, without colour conversion.
+/// A decoded image. Row 0 at the bottom, straight alpha; 8-bit texels where the file has 8 bits a
+/// channel, else float; both as stored, without colour conversion.
 struct KestrelPluginImage {
+  /// Set by the host: memory for `count` values, uint8_t or float; null where there is none. The
+  /// texels are the host's, also after a failure.
+  void* (*allocate)(void* host, size_t count, int is_float);
+  void* host;
+
   int width;
   int height;
-  uint8_t* texels8;     // RGBA or null
-  float* texels_float;  // RGBA or null
-  int encoded;          // 1: the floats come from integers (16-bit PNG) and may be sRGB-encoded;
-                        // 0: scene-linear (EXR, HDR)
+  int channels;  // 4: RGBA; 3: RGB, of 8-bit files without alpha
+  int is_float;  // what was allocated
+  int encoded;   // 1: the floats come from integers (16-bit PNG) and may be sRGB-encoded;
+                 // 0: scene-linear (EXR, HDR)
 };
 
 /// Files larger than this on a side are refused.
@@ -38,7 +43,6 @@ struct KestrelImagePlugin {
   /// Both return null, or a text with the reason (valid until the next call on the thread).
   const char* (*read_file)(const char* path, struct KestrelPluginImage* image);
   const char* (*read_memory)(const void* data, size_t byte_count, struct KestrelPluginImage* image);
-  void (*free_image)(struct KestrelPluginImage* image);
 
   /// .exr: all layers in one part, channels NAME.LETTER (Combined as plain R, G, B, A), half float
   /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits, straight

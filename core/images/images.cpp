@@ -5,8 +5,9 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
-#include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -82,28 +83,49 @@ float linear_from_srgb(float v) {
   return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
-/// Takes over the texels of `image`, and frees it.
-void move_into(Texture& texture, const KestrelImagePlugin& table, KestrelPluginImage& image) {
-  const std::unique_ptr<KestrelPluginImage, void (*)(KestrelPluginImage*)> owner(&image,
-                                                                                 table.free_image);
-  const size_t count = 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height);
-  std::vector<uint8_t> texels8;
-  std::vector<float> texels_float;
-  if (image.texels8) {
-    texels8.assign(image.texels8, image.texels8 + count);
-  } else {
-    texels_float.assign(image.texels_float, image.texels_float + count);
-    if (image.encoded && texture.srgb) {
-      for (size_t i = 0; i < count; ++i) {
-        if (i % 4 != 3) texels_float[i] = linear_from_srgb(texels_float[i]);
+/// An image that the plug-in decodes into memory of ours.
+class Target {
+ public:
+  KestrelPluginImage image{};
+
+  Target() {
+    image.allocate = allocate;
+    image.host = this;
+  }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+
+  void move_into(Texture& texture) {
+    if (image.is_float && image.encoded && texture.srgb) {
+      for (size_t i = 0; i < texels_float_.size(); ++i) {
+        if (i % 4 != 3) texels_float_[i] = linear_from_srgb(texels_float_[i]);
       }
     }
+    texture.width = image.width;
+    texture.height = image.height;
+    texture.channels8 = image.channels;
+    texture.texels8 = std::move(texels8_);
+    texture.texels_float = std::move(texels_float_);
   }
-  texture.width = image.width;
-  texture.height = image.height;
-  texture.texels8 = std::move(texels8);
-  texture.texels_float = std::move(texels_float);
-}
+
+ private:
+  static void* allocate(void* host, size_t count, int is_float) noexcept {
+    try {
+      auto& self = *static_cast<Target*>(host);
+      if (is_float) {
+        self.texels_float_.resize(count);
+        return self.texels_float_.data();
+      }
+      self.texels8_.resize(count);
+      return self.texels8_.data();
+    } catch (const std::exception&) {
+      return nullptr;
+    }
+  }
+
+  std::vector<uint8_t> texels8_;
+  std::vector<float> texels_float_;
+};
 
 }  // namespace
 
@@ -117,21 +139,21 @@ bool plugin_available() {
 
 void read_file(const std::string& path, Texture& texture) {
   const KestrelImagePlugin& table = require_plugin();
-  KestrelPluginImage image{};
-  if (const char* reason = table.read_file(path.c_str(), &image)) {
+  Target target;
+  if (const char* reason = table.read_file(path.c_str(), &target.image)) {
     fail(ErrorCode::file, "'{}' could not be read: {}.", path, reason);
   }
-  move_into(texture, table, image);
+  target.move_into(texture);
 }
 
 void read_memory(const void* data, size_t byte_count, Texture& texture) {
   const KestrelImagePlugin& table = require_plugin();
-  KestrelPluginImage image{};
-  if (const char* reason = table.read_memory(data, byte_count, &image)) {
+  Target target;
+  if (const char* reason = table.read_memory(data, byte_count, &target.image)) {
     fail(ErrorCode::file, "The image '{}' could not be read from memory: {}.", texture.name,
          reason);
   }
-  move_into(texture, table, image);
+  target.move_into(texture);
 }
 
 void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers) {
@@ -150,6 +172,7 @@ void write_file(const std::string& path, int width, int height, const std::vecto
 void fill_missing(Texture& texture) {
   texture.width = 1;
   texture.height = 1;
+  texture.channels8 = 4;
   texture.texels8 = {255, 0, 255, 255};
   texture.texels_float.clear();
 }

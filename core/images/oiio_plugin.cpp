@@ -57,7 +57,7 @@ const char* write_file_c(const char* path, int width, int height, const KestrelP
 extern "C" __attribute__((visibility("default"))) const KestrelImagePlugin* kestrel_image_plugin() {
   static const KestrelImagePlugin table = {
       KESTREL_IMAGE_PLUGIN_ABI,     "OpenImageIO " OIIO_VERSION_STRING, kestrel::oiio::read_file_c,
-      kestrel::oiio::read_memory_c, kestrel::oiio::free_image,          kestrel::oiio::write_file_c,
+      kestrel::oiio::read_memory_c, kestrel::oiio::write_file_c,
   };
   return &table;
 }

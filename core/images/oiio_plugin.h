@@ -17,7 +17,6 @@ std::string tidy(const std::string& message, const char* fallback);
 /// Both throw std::runtime_error with the reason.
 void read_file(const char* path, KestrelPluginImage& image);
 void read_memory(const void* data, size_t byte_count, KestrelPluginImage& image);
-void free_image(KestrelPluginImage* image);
 
 /// Throws std::runtime_error with the reason; then the file is as it was before.
 void write_file(const char* path, int width, int height, const KestrelPluginLayer* layers,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image files in: any format of OpenImageIO to RGBA with straight alpha, row 0 at the bottom.
+// Image files in: any format of OpenImageIO to RGB or RGBA with straight alpha, row 0 at the
+// bottom.
 #include <OpenImageIO/filesystem.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "images/oiio_plugin.h"
@@ -81,10 +83,11 @@ void check_size(const ImageSpec& spec) {
 }
 
 template <typename T>
-T* allocate(size_t count) {
-  T* memory = static_cast<T*>(std::calloc(count, sizeof(T)));
+T* allocate(KestrelPluginImage& image, size_t count) {
+  image.is_float = std::is_same_v<T, float>;
+  void* memory = image.allocate(image.host, count, image.is_float);
   if (!memory) throw std::bad_alloc();
-  return memory;
+  return static_cast<T*>(memory);
 }
 
 float encoded_from_linear(float v) {
@@ -131,30 +134,60 @@ void make_straight(uint8_t* rgba, size_t pixels, Alpha alpha) {
   }
 }
 
-/// Reads the chosen channels into RGBA, the last row of the file first.
+void require(bool ok, ImageInput& input) {
+  if (!ok) throw std::runtime_error(tidy(input.geterror(), "the file is damaged"));
+}
+
+/// Whether the first `count` of the chosen channels lie side by side in the file.
+bool in_order(const Channels& channels, int count) {
+  for (int c = 1; c < count; ++c) {
+    if (channels.rgba[c] != channels.rgba[0] + c) return false;
+  }
+  return channels.rgba[0] >= 0;
+}
+
+/// Reads `count` channels that are in order, the last row of the file first.
 template <typename T>
-void read_pixels(ImageInput& input, const Channels& channels, TypeDesc type, T opaque, T* rgba) {
+void read_in_order(ImageInput& input, int first, int count, TypeDesc type, T* texels) {
+  const ImageSpec spec = input.spec();
+  const auto stride = static_cast<OIIO::stride_t>(sizeof(T)) * count;
+  const OIIO::stride_t row = stride * spec.width;
+  T* top = texels + static_cast<size_t>(spec.height - 1) * static_cast<size_t>(spec.width * count);
+  require(spec.tile_width ? input.read_image(0, 0, first, first + count, type, top, stride, -row)
+                          : input.read_scanlines(0, 0, spec.y, spec.y + spec.height, spec.z, first,
+                                                 first + count, type, top, stride, -row),
+          input);
+}
+
+/// Reads the chosen channels into `count` of each texel, the last row of the file first.
+template <typename T>
+void read_pixels(ImageInput& input, const Channels& channels, int count, TypeDesc type, T opaque,
+                 T* texels) {
+  if (in_order(channels, count)) {
+    read_in_order(input, channels.rgba[0], count, type, texels);
+    return;
+  }
   const ImageSpec spec = input.spec();
   const int begin = channels.first();
-  const int count = channels.last() + 1 - begin;
+  const int read = channels.last() + 1 - begin;
   const size_t width = static_cast<size_t>(spec.width);
   const size_t rows_at_once = std::max<size_t>(1, std::min<size_t>(256, spec.height));
   // Tiled files are read whole; others in bands, so that little memory is needed beside the texels.
   const size_t band = spec.tile_width ? static_cast<size_t>(spec.height) : rows_at_once;
-  std::vector<T> rows(band * width * static_cast<size_t>(count));
+  std::vector<T> rows(band * width * static_cast<size_t>(read));
   for (size_t y = 0; y < static_cast<size_t>(spec.height); y += band) {
     const size_t height = std::min(band, static_cast<size_t>(spec.height) - y);
-    const bool ok = spec.tile_width
-                        ? input.read_image(0, 0, begin, begin + count, type, rows.data())
-                        : input.read_scanlines(0, 0, spec.y + static_cast<int>(y),
-                                               spec.y + static_cast<int>(y + height), spec.z, begin,
-                                               begin + count, type, rows.data());
-    if (!ok) throw std::runtime_error(tidy(input.geterror(), "the file is damaged"));
+    require(spec.tile_width ? input.read_image(0, 0, begin, begin + read, type, rows.data())
+                            : input.read_scanlines(0, 0, spec.y + static_cast<int>(y),
+                                                   spec.y + static_cast<int>(y + height), spec.z,
+                                                   begin, begin + read, type, rows.data()),
+            input);
     for (size_t row = 0; row < height; ++row) {
-      const T* from = rows.data() + row * width * static_cast<size_t>(count);
-      T* to = rgba + 4 * width * (static_cast<size_t>(spec.height) - 1 - (y + row));
-      for (size_t x = 0; x < width; ++x, from += count, to += 4) {
-        for (int c = 0; c < 4; ++c) {
+      const T* from = rows.data() + row * width * static_cast<size_t>(read);
+      T* to = texels + static_cast<size_t>(count) * width *
+                           (static_cast<size_t>(spec.height) - 1 - (y + row));
+      for (size_t x = 0; x < width; ++x, from += read, to += count) {
+        for (int c = 0; c < count; ++c) {
           const int channel = channels.rgba[c];
           to[c] = channel >= 0 ? from[channel - begin] : (c == 3 ? opaque : T(0));
         }
@@ -169,28 +202,28 @@ void decode(ImageInput& input, KestrelPluginImage& image) {
   const Channels channels = find_channels(spec);
   const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
   const Alpha alpha = channels.rgba[3] >= 0 ? alpha_of(input) : Alpha::straight;
+  image.channels = 4;
   if (spec.format.basetype == TypeDesc::UINT8) {
-    image.texels8 = allocate<uint8_t>(4 * pixels);
-    read_pixels<uint8_t>(input, channels, TypeDesc::UINT8, 255, image.texels8);
-    if (alpha != Alpha::straight) make_straight(image.texels8, pixels, alpha);
+    image.channels = channels.rgba[3] >= 0 ? 4 : 3;
+    auto* texels = allocate<uint8_t>(image, static_cast<size_t>(image.channels) * pixels);
+    read_pixels<uint8_t>(input, channels, image.channels, TypeDesc::UINT8, 255, texels);
+    if (alpha != Alpha::straight) make_straight(texels, pixels, alpha);
   } else {
-    image.texels_float = allocate<float>(4 * pixels);
-    read_pixels<float>(input, channels, TypeDesc::FLOAT, 1.0f, image.texels_float);
-    if (alpha != Alpha::straight) make_straight(image.texels_float, pixels);
+    auto* texels = allocate<float>(image, 4 * pixels);
+    read_pixels<float>(input, channels, 4, TypeDesc::FLOAT, 1.0f, texels);
+    if (alpha != Alpha::straight) make_straight(texels, pixels);
   }
   image.width = spec.width;
   image.height = spec.height;
   image.encoded = spec.format.is_floating_point() ? 0 : 1;
 }
 
-/// Decodes, and leaves `image` empty on failure.
-void decode_or_free(std::unique_ptr<ImageInput> input, KestrelPluginImage& image) {
+/// Decodes, and closes the file.
+void decode_and_close(std::unique_ptr<ImageInput> input, KestrelPluginImage& image) {
   if (!input) throw std::runtime_error(tidy(OIIO::geterror(), "the format is not known"));
-  image = {};
   try {
     decode(*input, image);
   } catch (...) {
-    free_image(&image);
     input->geterror();  // taken, so that OpenImageIO does not print it
     throw;
   }
@@ -255,7 +288,7 @@ void read_through_file(const uint8_t* data, size_t byte_count, const char* name,
     done += static_cast<size_t>(n);
   }
   const ImageSpec config = straight_alpha_wanted();
-  decode_or_free(ImageInput::open(path, &config), image);
+  decode_and_close(ImageInput::open(path, &config), image);
 }
 
 }  // namespace
@@ -266,7 +299,7 @@ void read_file(const char* path, KestrelPluginImage& image) {
   if (!std::filesystem::exists(status)) throw std::runtime_error("there is no such file");
   if (std::filesystem::is_directory(status)) throw std::runtime_error("it is a folder");
   const ImageSpec config = straight_alpha_wanted();
-  decode_or_free(ImageInput::open(path, &config), image);
+  decode_and_close(ImageInput::open(path, &config), image);
 }
 
 void read_memory(const void* data, size_t byte_count, KestrelPluginImage& image) {
@@ -287,13 +320,7 @@ void read_memory(const void* data, size_t byte_count, KestrelPluginImage& image)
   if (!input->open(name, spec, config)) {
     throw std::runtime_error(tidy(input->geterror(), "the file is damaged"));
   }
-  decode_or_free(std::move(input), image);
-}
-
-void free_image(KestrelPluginImage* image) {
-  std::free(image->texels8);
-  std::free(image->texels_float);
-  *image = {};
+  decode_and_close(std::move(input), image);
 }
 
 }  // namespace kestrel::oiio

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -53,15 +54,71 @@ void drop_opaque_alpha(Texture& t) {
 
 }  // namespace
 
+bool TextureDecoding::try_run() {
+  if (begun_.test_and_set()) return false;
+  decode();
+  source_ = Bytes();
+  done_.count_down();
+  return true;
+}
+
+void TextureDecoding::run() {
+  if (!try_run()) done_.wait();
+}
+
+void TextureDecoding::decode() {
+  const auto texture = empty_texture(options_);
+  try {
+    if (const std::string* path = std::get_if<std::string>(&source_)) {
+      if (texture->name.empty()) texture->name = *path;
+      options_.name = fmt::format("'{}' (file '{}')", options_.name, *path);
+      images::read_file(*path, *texture);
+    } else {
+      const Bytes& bytes = std::get<Bytes>(source_);
+      options_.name = fmt::format("'{}'", options_.name);
+      images::read_memory(bytes.data(), bytes.size(), *texture);
+    }
+    replace_infinite(*texture);
+    drop_opaque_alpha(*texture);
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    images::fill_missing(*texture);
+  }
+  texture_ = texture;
+}
+
+void TextureDecoding::report() {
+  if (failure_.empty() || reported_) return;
+  reported_ = true;
+  log::warning("Texture {} is shown in magenta. {}", options_.name, failure_);
+}
+
+TextureStore::~TextureStore() {
+  for (auto& [id, entry] : entries_) {
+    if (entry.decoding) entry.decoding->abandon();
+  }
+}
+
+void TextureStore::start(const std::shared_ptr<TextureDecoding>& decoding) {
+  background_.enqueue([decoding] { decoding->try_run(); });
+}
+
 void TextureStore::set_file(uint64_t id, std::string path, const TextureOptions& options) {
-  entries_.put(id, {options, File{std::move(path)}, nullptr});
+  std::weak_ptr<TextureDecoding>& known = files_[key_of(path, options)];
+  std::shared_ptr<TextureDecoding> decoding = known.lock();
+  if (!decoding || decoding->reported()) {
+    known = decoding = std::make_shared<TextureDecoding>(options, std::move(path));
+    start(decoding);
+  }
+  entries_.put(id, {std::move(decoding), nullptr});
 }
 
 void TextureStore::set_memory(uint64_t id, std::span<const uint8_t> bytes,
                               const TextureOptions& options) {
-  entries_.put(
-      id,
-      {options, std::make_shared<const std::vector<uint8_t>>(bytes.begin(), bytes.end()), nullptr});
+  const auto decoding = std::make_shared<TextureDecoding>(
+      options, TextureDecoding::Bytes(bytes.begin(), bytes.end()));
+  start(decoding);
+  entries_.put(id, {decoding, nullptr});
 }
 
 void TextureStore::set_pixels8(uint64_t id, int width, int height, std::span<const uint8_t> rgba,
@@ -70,7 +127,7 @@ void TextureStore::set_pixels8(uint64_t id, int width, int height, std::span<con
   texture->width = width;
   texture->height = height;
   texture->texels8.assign(rgba.begin(), rgba.end());
-  entries_.put(id, {options, std::monostate{}, std::move(texture)});
+  entries_.put(id, {nullptr, std::move(texture)});
 }
 
 void TextureStore::set_pixels_float(uint64_t id, int width, int height, std::span<const float> rgba,
@@ -80,78 +137,34 @@ void TextureStore::set_pixels_float(uint64_t id, int width, int height, std::spa
   texture->height = height;
   texture->texels_float.assign(rgba.begin(), rgba.end());
   replace_infinite(*texture);
-  entries_.put(id, {options, std::monostate{}, std::move(texture)});
+  entries_.put(id, {nullptr, std::move(texture)});
 }
 
-TextureStore::FileKey TextureStore::key_of(const Entry& entry) {
-  FileKey key{.path = std::get<File>(entry.source).path,
-              .srgb = entry.options.srgb,
-              .nearest = entry.options.nearest,
-              .extension = entry.options.extension};
+TextureStore::FileKey TextureStore::key_of(const std::string& path, const TextureOptions& options) {
+  FileKey key{.path = path,
+              .srgb = options.srgb,
+              .nearest = options.nearest,
+              .extension = options.extension};
   std::error_code error;
-  const auto modified = std::filesystem::last_write_time(key.path, error);
+  const auto modified = std::filesystem::last_write_time(path, error);
   if (!error) key.modified = modified.time_since_epoch().count();
-  const auto byte_count = std::filesystem::file_size(key.path, error);
+  const auto byte_count = std::filesystem::file_size(path, error);
   if (!error) key.byte_count = byte_count;
   return key;
 }
 
-std::vector<TextureStore::Job> TextureStore::jobs_for(std::span<const uint64_t> ids) {
-  std::vector<Job> jobs;
-  std::map<FileKey, size_t> job_of_file;
+void TextureStore::decode(std::span<const uint64_t> ids) {
+  std::vector<Entry*> waiting;
   for (const uint64_t id : ids) {
     Entry& entry = *entries_.find(id);
-    if (entry.texture) continue;
-    if (!std::holds_alternative<File>(entry.source)) {
-      jobs.emplace_back(entry).waiting.push_back(&entry);
-      continue;
-    }
-    const FileKey key = key_of(entry);
-    const auto known = decoded_.find(key);
-    if (known != decoded_.end() && (entry.texture = known->second.lock())) continue;
-    const auto [place, added] = job_of_file.emplace(key, jobs.size());
-    if (added) jobs.emplace_back(entry).key = key;
-    jobs[place->second].waiting.push_back(&entry);
+    if (!entry.texture) waiting.push_back(&entry);
   }
-  return jobs;
-}
-
-void TextureStore::run(Job& job) {
-  const auto texture = empty_texture(job.first->options);
-  try {
-    if (const File* file = std::get_if<File>(&job.first->source)) {
-      if (texture->name.empty()) texture->name = file->path;
-      images::read_file(file->path, *texture);
-    } else {
-      const auto& bytes = *std::get<Bytes>(job.first->source);
-      images::read_memory(bytes.data(), bytes.size(), *texture);
-    }
-    replace_infinite(*texture);
-    drop_opaque_alpha(*texture);
-  } catch (const Error& error) {
-    job.failure = error.what();
-    images::fill_missing(*texture);
+  tbb::parallel_for_each(waiting, [](const Entry* entry) { entry->decoding->run(); });
+  for (Entry* entry : waiting) {
+    entry->decoding->report();
+    entry->texture = entry->decoding->texture();
   }
-  job.texture = texture;
-}
-
-void TextureStore::decode(std::span<const uint64_t> ids) {
-  std::vector<Job> jobs = jobs_for(ids);
-  tbb::parallel_for_each(jobs, run);
-  for (Job& job : jobs) {
-    if (!job.failure.empty()) {
-      const File* file = std::get_if<File>(&job.first->source);
-      log::warning("Texture '{}'{} is shown in magenta. {}", job.first->options.name,
-                   file ? fmt::format(" (file '{}')", file->path) : "", job.failure);
-    } else if (job.key) {
-      decoded_[*job.key] = job.texture;
-    }
-    for (Entry* entry : job.waiting) {
-      entry->texture = job.texture;
-      if (std::holds_alternative<Bytes>(entry->source)) entry->source = std::monostate{};
-    }
-  }
-  std::erase_if(decoded_, [](const auto& known) { return known.second.expired(); });
+  std::erase_if(files_, [](const auto& known) { return known.second.expired(); });
 }
 
 }  // namespace kestrel

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textures by id: files, bytes of files, or texels; decoded when they are first used.
+// Textures by id: files, bytes of files, or texels.
 #pragma once
 
+#include <tbb/task_arena.h>
+
+#include <atomic>
 #include <compare>
 #include <cstdint>
-#include <filesystem>
+#include <latch>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -26,8 +28,49 @@ struct TextureOptions {
   Extension extension = Extension::repeat;
 };
 
+/// A file or its bytes, decoded once by whoever comes first.
+class TextureDecoding {
+ public:
+  using Bytes = std::vector<uint8_t>;
+
+  TextureDecoding(TextureOptions options, std::variant<std::string, Bytes> path_or_bytes)
+      : options_(std::move(options)), source_(std::move(path_or_bytes)) {}
+
+  /// Decodes, unless somebody has begun to.
+  bool try_run();
+  /// Decodes, or waits for the thread that does.
+  void run();
+  /// Nobody decodes it any more who has not begun.
+  void abandon() { begun_.test_and_set(); }
+
+  /// After run(). Magenta where it failed.
+  const std::shared_ptr<const Texture>& texture() const { return texture_; }
+  /// After run(): says in the log why it failed, if it did and that was not said yet.
+  void report();
+  /// Whether report() said that it failed.
+  bool reported() const { return reported_; }
+
+ private:
+  void decode();
+
+  TextureOptions options_;
+  std::variant<std::string, Bytes> source_;
+  std::atomic_flag begun_;
+  std::latch done_{1};
+  std::shared_ptr<const Texture> texture_;
+  std::string failure_;
+  bool reported_ = false;
+};
+
 class TextureStore {
  public:
+  TextureStore() = default;
+  ~TextureStore();
+  TextureStore(const TextureStore&) = delete;
+  TextureStore& operator=(const TextureStore&) = delete;
+
+  /// Files and bytes are decoded on other threads from now on. The same file under the same options
+  /// is decoded once, however many ids name it, and not again while it is unchanged.
   void set_file(uint64_t id, std::string path, const TextureOptions& options);
   void set_memory(uint64_t id, std::span<const uint8_t> bytes, const TextureOptions& options);
   /// 4 values a pixel. Floats that are not finite are replaced, with a warning.
@@ -38,23 +81,17 @@ class TextureStore {
   bool erase(uint64_t id) { return entries_.erase(id); }
   bool contains(uint64_t id) { return entries_.find(id) != nullptr; }
 
-  /// Decodes those of `ids` (all known) that are not yet, in parallel. The same file under the
-  /// same options is decoded once, however many ids name it, and not again while it is unchanged.
-  /// What cannot be read becomes magenta, with one warning.
+  /// Decodes those of `ids` (all known) that are not yet, in parallel. What cannot be read becomes
+  /// magenta, with one warning.
   void decode(std::span<const uint64_t> ids);
 
   /// After decode(). The same pointer for the same texels.
   std::shared_ptr<const Texture> get(uint64_t id) { return entries_.find(id)->texture; }
 
  private:
-  struct File {
-    std::string path;
-  };
-  using Bytes = std::shared_ptr<const std::vector<uint8_t>>;
   struct Entry {
-    TextureOptions options;
-    std::variant<std::monostate, File, Bytes> source;  // monostate: texels were given
-    std::shared_ptr<const Texture> texture;            // null until decoded
+    std::shared_ptr<TextureDecoding> decoding;  // null: texels were given
+    std::shared_ptr<const Texture> texture;     // null until decoded
   };
   /// What decides the texels of a file.
   struct FileKey {
@@ -66,23 +103,13 @@ class TextureStore {
     Extension extension = Extension::repeat;
     auto operator<=>(const FileKey&) const = default;
   };
-  /// One image to decode, and who waits for it.
-  struct Job {
-    const Entry* first = nullptr;
-    std::optional<FileKey> key;  // of files
-    std::vector<Entry*> waiting;
-    std::shared_ptr<const Texture> texture;
-    std::string failure;
 
-    explicit Job(const Entry& entry) : first(&entry) {}
-  };
-
-  static FileKey key_of(const Entry& entry);
-  std::vector<Job> jobs_for(std::span<const uint64_t> ids);
-  static void run(Job& job);
+  static FileKey key_of(const std::string& path, const TextureOptions& options);
+  void start(const std::shared_ptr<TextureDecoding>& decoding);
 
   ItemStore<Entry> entries_;
-  std::map<FileKey, std::weak_ptr<const Texture>> decoded_;
+  std::map<FileKey, std::weak_ptr<TextureDecoding>> files_;
+  tbb::task_arena background_;
 };
 
 }  // namespace kestrel

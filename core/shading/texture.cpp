@@ -109,9 +109,10 @@ vec4 bilinear8(const Texture& t, const Footprint& at) {
     return at.mix(value[low[left + c]], value[low[right + c]], value[high[left + c]],
                   value[high[right + c]]);
   };
-  const float alpha = channels < 4 ? 1.0f
-                                   : at.mix(low[left + 3] * kFromByte, low[right + 3] * kFromByte,
-                                            high[left + 3] * kFromByte, high[right + 3] * kFromByte);
+  const float alpha = channels < 4
+                          ? 1.0f
+                          : at.mix(low[left + 3] * kFromByte, low[right + 3] * kFromByte,
+                                   high[left + 3] * kFromByte, high[right + 3] * kFromByte);
   return {channel(0), channel(1), channel(2), alpha};
 }
 

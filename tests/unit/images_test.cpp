@@ -57,14 +57,14 @@ TEST(ReadImage, RowZeroIsTheBottomOfThePicture) {
   const Texture t = read(png);
   EXPECT_EQ(t.width, 2);
   EXPECT_EQ(t.height, 2);
-  EXPECT_EQ(t.texels8, (Bytes{0, 0, 255, 255, 255, 255, 255, 255,  //
-                              255, 0, 0, 255, 0, 255, 0, 255}));
+  EXPECT_EQ(t.channels8, 3) << "no alpha in the file";
+  EXPECT_EQ(t.texels8, (Bytes{0, 0, 255, 255, 255, 255, 255, 0, 0, 0, 255, 0}));
   EXPECT_TRUE(t.texels_float.empty());
 }
 
 TEST(ReadImage, GreyBecomesGreyRgb) {
   EXPECT_EQ(read(test::make_png(2, 1, test::kPngGrey, 8, {10, 200})).texels8,
-            (Bytes{10, 10, 10, 255, 200, 200, 200, 255}));
+            (Bytes{10, 10, 10, 200, 200, 200}));
 }
 
 TEST(ReadImage, AlphaStaysStraight) {
@@ -111,7 +111,7 @@ TEST(ReadImage, FileAndMemoryGiveTheSameTexels) {
 TEST(ReadImage, TheFormatIsTakenFromTheBytesNotTheName) {
   const TemporaryFolder folder;
   const Bytes png = test::make_png(1, 1, test::kPngGrey, 8, {9});
-  EXPECT_EQ(read(test::save(folder.file("a.jpg"), png)).texels8, (Bytes{9, 9, 9, 255}));
+  EXPECT_EQ(read(test::save(folder.file("a.jpg"), png)).texels8, (Bytes{9, 9, 9}));
 }
 
 TEST(ReadImage, ErrorsNameTheFileAndTheCause) {
@@ -298,7 +298,7 @@ TEST(WriteImage, PngTakesTheFirstLayer) {
   const std::vector<float> white(3, 1.0f), black(3, 0.0f);
   images::write_file(folder.file("a.png"), 1, 1,
                      {{"Shadow", "RGB", white.data()}, {"Lighting", "RGB", black.data()}});
-  EXPECT_EQ(read(folder.file("a.png")).texels8, (Bytes{255, 255, 255, 255}));
+  EXPECT_EQ(read(folder.file("a.png")).texels8, (Bytes{255, 255, 255}));
 }
 
 TEST(WriteImage, UnknownEndingNamesTheRemedy) {

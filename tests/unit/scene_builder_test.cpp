@@ -791,7 +791,27 @@ TEST(Textures, AnUnreadableOneIsMagentaWithOneWarning) {
   EXPECT_EQ(log.count("packed"), 1);
 }
 
-TEST(Textures, ThatNothingUsesAreNotDecoded) {
+TEST(Textures, MayBeReplacedAndFreedWhileTheyAreDecoded) {
+  const TemporaryFolder folder;
+  const LogCapture log;
+  std::vector<std::string> paths;
+  for (uint8_t i = 0; i < 40; ++i) {
+    const test::Bytes texels(64 * 64, i);
+    paths.push_back(test::save(folder.file(fmt::format("{}.png", i)),
+                               test::make_png(64, 64, test::kPngGrey, 8, texels)));
+  }
+  for (int round = 0; round < 5; ++round) {
+    Builder builder;
+    for (const std::string& path : paths) builder.set_texture_file(1, path, {});
+    for (uint64_t id = 2; id < 40; ++id) builder.set_texture_file(id, paths[id], {});
+    use_texture(builder, 1, 1);
+    if (round % 2) continue;  // freed before it was ever committed
+    EXPECT_EQ(builder.commit()->textures[0]->texels8[0], 39) << "the last that was set";
+  }
+  EXPECT_TRUE(log.messages().empty());
+}
+
+TEST(Textures, ThatNothingUsesAreNotMissed) {
   const LogCapture log;
   Builder builder;
   builder.set_texture_file(1, "/nowhere/unused.png", {});

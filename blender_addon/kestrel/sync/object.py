@@ -80,7 +80,8 @@ class Objects:
         key = (self.key_of(original), obj.data.as_pointer())
         found = self.shapes.get(key)
         if found is None:
-            found = (obj.name_full, sync_mesh(self.export, obj), self.slots(obj))
+            slots = self.slots(obj)  # first: the library decodes their images meanwhile
+            found = (obj.name_full, sync_mesh(self.export, obj), slots)
             self.shapes[key] = found
         return found
 
