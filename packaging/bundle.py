@@ -5,8 +5,9 @@
 
 Blender has libraries of its own loaded, Embree, TBB and libstdc++ among them, and the loader looks
 into those first, whatever a library's file is called. So the copies get private file names, private
-names for their symbols (or symbol versions, where they have such) and paths relative to their own
-folder. Then nothing in the folder can bind to Blender's copies, and nothing of Blender's to them.
+names for all their symbols and paths relative to their own folder. Then nothing in the folder can
+bind to Blender's copies, and nothing of Blender's to them. Versions of symbols are no protection: a
+library without any, such as libunwind, stands in for all of them.
 """
 
 import re
@@ -23,8 +24,6 @@ SYSTEM = re.compile(r"^(lib(c|m|dl|rt|pthread)\.so\.\d+|ld-linux.*|linux-vdso.*)
 LOOKED_UP = re.compile(r"^(scalable_\w+|__TBB_\w+)$")
 TBB_LOADS = ("libtbbmalloc.so.2", "libtbbbind_2_5.so.3", "libtbbbind_2_0.so.3", "libtbbbind.so.3",
              "libirml.so.1")
-
-VERSION = re.compile(r"^(GLIBCXX|CXXABI|GCC)_")
 
 
 class BundleError(Exception):
@@ -57,27 +56,24 @@ def private_soname(soname):
     return "libkestrel_" + soname.removeprefix("lib")
 
 
-def chosen_names(files):
-    """({symbol: new name}, {version: new version}) for the whole bundle."""
-    names, versions = {}, {}
-    for file in files:
-        if file.is_versioned():
-            versions |= {item.name: "K" + item.name[1:] for item in file.versions()
-                         if item.defined and not item.base}
-        else:
-            names |= {name: elf.private_name(name) for name in file.exports()}
-        names |= {item.name: elf.private_name(item.name) for item in file.symbols()
-                  if not item.defined and LOOKED_UP.match(item.name)}
-    unknown = [name for name in versions if not VERSION.match(name)]
-    if unknown:
-        raise BundleError(f"unknown symbol versions: {', '.join(sorted(unknown))}")
-    return names, versions
+def chosen_names(library, copies):
+    """{symbol: private name} for the whole bundle: what the copies export, and what TBB looks up."""
+    exported = set().union(*(file.exports() for file in copies))
+    imported = [symbol for file in (library, *copies) for symbol in file.symbols()
+                if not symbol.defined]
+    # A name that is meant to come from glibc keeps its name everywhere.
+    exported -= {symbol.name for symbol in imported if symbol.version.startswith("GLIBC_")}
+    looked_up = {symbol.name for symbol in imported if LOOKED_UP.match(symbol.name)}
+    names = {name: elf.private_name(name) for name in sorted(exported | looked_up)}
+    taken = set(names) | {symbol.name for symbol in imported}
+    if len(set(names.values())) != len(names) or not taken.isdisjoint(names.values()):
+        raise BundleError("two symbols would get the same name")
+    return names
 
 
-def make_private(file, names, versions):
-    file.rename(names, versions)
-    file.unshare_unique()
-    for name in sorted(filter(LOOKED_UP.match, names)):
+def make_private(file, names):
+    file.rename(names)
+    for name in filter(LOOKED_UP.match, names):
         if file.has_text(name):
             file.replace_text(name, names[name])
     for name in filter(file.has_text, TBB_LOADS):
@@ -97,11 +93,12 @@ def bundle(library, folder):
     library = Path(library)
     needed = needed_libraries(library)
     copies = {soname: elf.Elf(path) for soname, path in needed.items()}
-    names, versions = chosen_names(copies.values())
+    original = elf.Elf(library)
+    names = chosen_names(original, copies.values())
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for soname, file in {library.name: elf.Elf(library), **copies}.items():
-        make_private(file, names, versions)
+    for soname, file in {library.name: original, **copies}.items():
+        make_private(file, names)
         private = soname if soname == library.name else private_soname(soname)
         target = folder / private
         target.unlink(missing_ok=True)  # a running Blender may have the old one mapped

@@ -2,18 +2,19 @@
 """The dynamic symbols of a 64-bit little-endian ELF file, and renaming them in place.
 
 A new name has the old one's length and the old one's GNU hash (h * 33 + c for each character c), so
-that no table of the file has to be rebuilt. Names of symbol versions are hashed in their own
-records, which are rewritten. Files with the older DT_HASH table are refused: their hash differs.
+that no table of the file has to be rebuilt. Files with the older DT_HASH table are refused: their
+hash is another one.
 """
 
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
 
-DYNSYM, OLD_HASH, VERDEF, VERNEED, VERSYM = 11, 5, 0x6FFFFFFD, 0x6FFFFFFE, 0x6FFFFFFF
+DYNSYM, OLD_HASH, VERNEED, VERSYM = 11, 5, 0x6FFFFFFE, 0x6FFFFFFF
 UNDEFINED, ABSOLUTE = 0, 0xFFF1
-LOCAL, GLOBAL, WEAK, UNIQUE = 0, 1, 2, 10
-BASE_VERSION = 1  # flag of the version that names the file itself
+LOCAL = 0
+HIDDEN_VERSION = 0x8000  # flag beside a symbol's version
 HEADER, SECTION, SYMBOL = "<16sHHIQQQIHHHHHH", "<IIQQQQIIQQ", "<IBBHQQ"
 
 
@@ -23,24 +24,15 @@ class ElfError(Exception):
 
 @dataclass
 class Symbol:
-    at: int        # offset of the record in the file
     name_at: int   # offset of the name in the file
     name: str
     bind: int
     section: int   # UNDEFINED, ABSOLUTE or a section's number
+    version: str   # that it needs, "GLIBC_2.34"; empty where it is defined or needs none
 
     @property
     def defined(self):
         return self.section != UNDEFINED
-
-
-@dataclass
-class Version:
-    hash_at: int   # offset of its hash in the file; 0 for a parent, which has none
-    name_at: int
-    name: str
-    defined: bool  # by this file, else needed by it
-    base: bool
 
 
 def gnu_hash(name):
@@ -50,25 +42,15 @@ def gnu_hash(name):
     return value
 
 
-def version_hash(name):
-    """The hash of System V's ABI, which version records keep."""
-    value = 0
-    for byte in name.encode("latin-1"):
-        value = (value << 4) + byte
-        high = value & 0xF0000000
-        value = (value ^ (high >> 24)) & ~high
-    return value
-
-
 def private_name(name):
     """A name of the same length and GNU hash: at the first letter followed by a small letter, the
-    former goes up by 1 and the latter down by 33 (`rtc` becomes `sSc`, `3tbb` becomes `3uAb`)."""
-    for index, (first, second) in enumerate(zip(name, name[1:])):
-        if first.isalpha() and first not in "zZ" and "b" <= second <= "z":
-            made = name[:index] + chr(ord(first) + 1) + chr(ord(second) - 33) + name[index + 2:]
-            if gnu_hash(made) != gnu_hash(name):
-                raise ElfError(f"the hash of {name} changed with {made}")
-            return made
+    former goes up by 1 and the latter down by 33 (`rtc` becomes `sSc`, `3tbb` becomes `3uAb`). Where
+    there is no such pair, the other way round at the first two capitals (`_ZTIa`, `_YuIa`)."""
+    for step, firsts, seconds in ((1, "A-Ya-y", "b-z"), (-1, "B-Zb-z", "A-Y")):
+        pair = re.search(f"[{firsts}][{seconds}]", name)
+        if pair:
+            made = "".join(map(chr, (ord(pair[0][0]) + step, ord(pair[0][1]) - 33 * step)))
+            return name[:pair.start()] + made + name[pair.end():]
     raise ElfError(f"no name with the hash of {name}")
 
 
@@ -91,83 +73,58 @@ class Elf:
 
     def symbols(self):
         """The dynamic symbols, without the empty first one."""
-        table = self._of_kind(DYNSYM)
-        names = self._sections[table[6]][4]
+        table, versions = self._of_kind(DYNSYM), self._of_kind(VERSYM)
+        names, needed = self._sections[table[6]][4], self._needed_versions()
         found = []
-        for at in range(table[4] + table[9], table[4] + table[5], table[9]):
-            name, info, _, section, _, _ = struct.unpack_from(SYMBOL, self.data, at)
-            found.append(Symbol(at, names + name, self._text(names + name), info >> 4, section))
+        for index in range(1, table[5] // table[9]):
+            name, info, _, section, _, _ = struct.unpack_from(SYMBOL, self.data,
+                                                              table[4] + index * table[9])
+            version = 0
+            if versions:
+                version, = struct.unpack_from("<H", self.data, versions[4] + 2 * index)
+            found.append(Symbol(names + name, self._text(names + name), info >> 4, section,
+                                needed.get(version & ~HIDDEN_VERSION, "")))
         return found
 
-    def versions(self):
-        """Every version that the file defines or needs."""
-        return [*self._defined_versions(), *self._needed_versions()]
-
-    def _records(self, kind):
-        """(offset of the section's first record, how many, offset of its strings)."""
-        section = self._of_kind(kind)
-        return (section[4], section[7], self._sections[section[6]][4]) if section else (0, 0, 0)
-
-    def _defined_versions(self):
-        at, count, names = self._records(VERDEF)
-        for _ in range(count):
-            _, flags, _, parts, _, part, following = struct.unpack_from("<HHHHIII", self.data, at)
-            part += at
-            for index in range(parts):
-                name, step = struct.unpack_from("<II", self.data, part)
-                yield Version(0 if index else at + 8, names + name, self._text(names + name), True,
-                              bool(flags & BASE_VERSION))
-                part += step
-            at += following
-
     def _needed_versions(self):
-        at, count, names = self._records(VERNEED)
-        for _ in range(count):
+        """{number in this file: name of a version that it needs}."""
+        section, found = self._of_kind(VERNEED), {}
+        if section is None:
+            return found
+        at, names = section[4], self._sections[section[6]][4]
+        for _ in range(section[7]):
             _, parts, _, part, following = struct.unpack_from("<HHIII", self.data, at)
             part += at
             for _ in range(parts):
-                _, _, _, name, step = struct.unpack_from("<IHHII", self.data, part)
-                yield Version(part, names + name, self._text(names + name), False, False)
+                _, _, number, name, step = struct.unpack_from("<IHHII", self.data, part)
+                found[number] = self._text(names + name)
                 part += step
             at += following
+        return found
+
+    def needed_versions(self):
+        return set(self._needed_versions().values())
 
     def exports(self):
         """Names that others can bind to, without those that stand for a version."""
         return {symbol.name for symbol in self.symbols()
                 if symbol.defined and symbol.bind != LOCAL and symbol.section != ABSOLUTE}
 
-    def is_versioned(self):
-        return any(version.defined and not version.base for version in self.versions())
-
-    def rename(self, new_names, new_versions):
-        """Both are {old: new} of the same lengths. Raises ElfError where a change would reach other
-        names too, as the linker lets a name be the end of a longer one."""
+    def rename(self, names):
+        """Rename symbols, {old: new}. Raises ElfError where a change would reach other names too, as
+        the linker lets a name be the end of a longer one."""
         if self._of_kind(OLD_HASH):
             raise ElfError(f"{self.path} has a DT_HASH table")
-        symbols, versions = self.symbols(), self.versions()
-        changes = {item.name_at: new_names[item.name] for item in symbols if item.name in new_names}
-        changes |= {item.name_at: new_versions[item.name] for item in versions
-                    if item.name in new_versions}
-        for at, name in changes.items():
-            self.data[at:at + len(name)] = name.encode("latin-1")
-        for item in versions:
-            if item.hash_at and item.name in new_versions:
-                struct.pack_into("<I", self.data, item.hash_at,
-                                 version_hash(new_versions[item.name]))
-        self._check(symbols, self.symbols(), {**new_versions, **new_names})
-        self._check(versions, self.versions(), new_versions)
-
-    def _check(self, before, after, wanted):
-        for old, new in zip(before, after, strict=True):
-            if new.name != wanted.get(old.name, old.name):
+        before = self.symbols()
+        for symbol in before:
+            new = names.get(symbol.name)
+            if new:
+                if len(new) != len(symbol.name) or gnu_hash(new) != gnu_hash(symbol.name):
+                    raise ElfError(f"{new} has not the length and the hash of {symbol.name}")
+                self.data[symbol.name_at:symbol.name_at + len(new)] = new.encode("latin-1")
+        for old, new in zip(before, self.symbols()):
+            if new.name != names.get(old.name, old.name) or new.version != old.version:
                 raise ElfError(f"{self.path}: {old.name} would become {new.name}")
-
-    def unshare_unique(self):
-        """Symbols that the loader makes one of in a process, whatever library they come from, become
-        ordinary ones."""
-        for symbol in self.symbols():
-            if symbol.bind == UNIQUE:
-                self.data[symbol.at + 4] = self.data[symbol.at + 4] & 0xF | GLOBAL << 4
 
     def replace_text(self, old, new):
         """Change a whole string of the file, wherever it stands; both of the same length."""

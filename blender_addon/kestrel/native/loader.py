@@ -15,9 +15,11 @@ from . import capi
 PACKAGED = Path(__file__).resolve().parent / "lib" / "libkestrel.so"
 PLUGIN_NAME = "libkestrel_oiio.so"
 
-# Blender has loaded libraries of its own, perhaps other versions of those that Kestrel needs, such
-# as Embree: their functions must not take the place of ours.
-MODE = ctypes.RTLD_LOCAL | getattr(os, "RTLD_DEEPBIND", 0)
+# Not RTLD_DEEPBIND: the allocator must be Blender's. The packaged library needs no protection from
+# Blender's own Embree and TBB, as packaging/bundle.py gave all its symbols private names.
+MODE = ctypes.RTLD_LOCAL
+MAPS = Path("/proc/self/maps")
+DELETED = " (deleted)"  # what Linux appends to the path of a mapped file that is gone
 
 _library = None
 _error = ""
@@ -31,11 +33,37 @@ def library_path():
     return Path(chosen) if chosen else PACKAGED
 
 
+def mapped_libraries():
+    """Paths of all Kestrel libraries in this process, as Linux gives them."""
+    lines = MAPS.read_text().splitlines() if MAPS.exists() else []
+    paths = {line.split(None, 5)[5] for line in lines if "/" in line}
+    return sorted(path for path in paths
+                  if Path(path.removesuffix(DELETED)).name == PACKAGED.name)
+
+
+def _refuse_a_second(path):
+    """Raise KestrelError where this process has another Kestrel library than the one at `path`.
+
+    The system's loader would hand out the old one for the path of a file that was replaced, and mix
+    the parts of two that lie in different folders.
+    """
+    for found in mapped_libraries():
+        if found.endswith(DELETED):
+            raise capi.KestrelError(
+                "Kestrel was updated or removed while Blender is running, and Blender still holds "
+                "the old library. Save your work and restart Blender.")
+        if found != os.path.realpath(path):
+            raise capi.KestrelError(
+                f"Two Kestrels at once: this Blender has already loaded {found}. Disable or remove "
+                "one of the two in the preferences and restart Blender.")
+
+
 def _load(path):
     if not path.is_file():
         raise capi.KestrelError(
             f"There is no Kestrel library at {path}. Install the add-on from its zip file, or name "
             "a libkestrel.so in the environment variable KESTREL_LIBRARY and restart Blender.")
+    _refuse_a_second(path)
     try:
         cdll = ctypes.CDLL(str(path), mode=MODE)
     except OSError as error:
