@@ -7,7 +7,8 @@ WHAT: 3.4 (this machine's Blender), 4.3 and 5.2 (folders with Debian 13 and sid)
 build-trixie and build-sid; by default the first three, with --all everything. The folders lie in
 KESTREL_MATRIX, by default /var/tmp/kestrel-matrix, take root, debootstrap and a network to make, and
 are kept. Where one cannot be made, what needs it is skipped with the reason. With --minutes nothing is
-begun after that time. Results, logs and pictures go to BUILD/matrix. Exits with 1 if anything failed.
+begun after that time. Results, logs and pictures go to --out, by default BUILD/matrix. Exits with 1 if
+anything failed.
 """
 
 import argparse
@@ -199,9 +200,9 @@ STEPS = {
 class Run:
     """What the versions share: the zip, the scene, the picture to compare with, the time."""
 
-    def __init__(self, build, minutes):
+    def __init__(self, build, out, minutes):
         self.build = build
-        self.results = places.fresh(build / "matrix")
+        self.results = places.fresh(out)
         self.began, self.minutes = time.monotonic(), minutes
         self.showcase = self.picture = None
         self.passed, self.failed, self.skipped = [], [], []
@@ -351,9 +352,10 @@ def main():
     parser.add_argument("--all", action="store_true", help="every Blender and every source build")
     parser.add_argument("--minutes", type=float, help="begin nothing after this time")
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
+    parser.add_argument("--out", type=Path, help="folder of the results, emptied first")
     args = parser.parse_args()
     wanted = args.what or (VERSIONS + BUILDS if args.all else VERSIONS)
-    run = Run(args.build.resolve(), args.minutes)
+    run = Run(args.build.resolve(), (args.out or args.build / "matrix").resolve(), args.minutes)
     for name in (*VERSIONS, *BUILDS):
         if name in wanted and (name == "3.4" or run.in_time(name)):
             (run.sources if name in BUILDS else run.blender)(name)

@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from pathlib import Path
 
-OWN_FOLDER = "/kestrel/native/lib/"
+OWN = "libkestrel"  # what the names of all of Kestrel's own libraries begin with
 GLIBC = re.compile(r"^(lib(c|m|dl|rt|pthread)\.so\.\d+|ld-linux-x86-64\.so\.2)$")
 ALLOCATOR = re.compile(r"^(malloc|calloc|realloc|free|memalign|posix_memalign|aligned_alloc|"
                        r"malloc_usable_size|valloc|pvalloc|reallocarray)$")
@@ -22,16 +22,20 @@ def bindings(logs):
     found = set()
     for log in logs:
         with open(log, encoding="utf-8", errors="replace") as lines:
-            found |= {match.groups() for line in lines if OWN_FOLDER in line
+            found |= {match.groups() for line in lines if OWN in line
                       for match in [LINE.search(line)] if match}
     return found
 
 
+def is_own(path):
+    return Path(path).name.startswith(OWN)
+
+
 def is_allowed(source, target, symbol):
     name = Path(target).name
-    if OWN_FOLDER not in source:
+    if not is_own(source):
         return False
-    return OWN_FOLDER in target or bool(GLIBC.match(name) or ALLOCATOR.match(symbol))
+    return is_own(target) or bool(GLIBC.match(name) or ALLOCATOR.match(symbol))
 
 
 def report(found):
@@ -42,7 +46,7 @@ def report(found):
                    for source, target, symbol in sorted(found))]
     faults = [f"{source} binds {symbol} of {target}" for source, target, symbol in sorted(found)
               if not is_allowed(source, target, symbol)]
-    libraries = {Path(source).name for source, _, _ in found if OWN_FOLDER in source}
+    libraries = {Path(source).name for source, _, _ in found if is_own(source)}
     for part in ("libkestrel.so", "embree", "tbb", "epoxy", "stdc++", "gcc_s"):
         if not any(part in name for name in libraries):
             faults.append(f"nothing was bound by {part}: was Kestrel loaded at all?")
