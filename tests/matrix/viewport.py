@@ -21,7 +21,8 @@ FOLDER = Path(FOLDER)
 SHADINGS = ("SOLID", "MATERIAL", "RENDERED", "SOLID")
 WAIT_S = 6.0          # for a shading to show; software GL compiles its shaders meanwhile
 CONTENT_SPREAD = 0.02  # standard deviation of a picture, 0 to 1, that is more than a plain area
-_state = {"index": -1}
+PATIENCE = 5           # times to look again at a picture that shows nothing yet
+_state = {"index": -1, "looks": 0}
 
 
 def window_and_area():
@@ -35,6 +36,7 @@ def shoot(name):
     window, area = window_and_area()
     path = FOLDER / f"viewport_{name}.png"
     with bpy.context.temp_override(window=window, area=area):
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
         bpy.ops.screen.screenshot(filepath=str(path))
     image = bpy.data.images.load(str(path))
     width, height = image.size
@@ -52,11 +54,17 @@ def draws():
                if getattr(kind, "bl_idname", "") == "KESTREL")
 
 
-def check(name, picture):
+def is_shown(name, picture):
+    """Whether there is something to see; raises when there has been nothing for long."""
     spread = float(picture.std())
-    if spread < CONTENT_SPREAD:
+    _state["looks"] += 1
+    if spread >= CONTENT_SPREAD:
+        print(f"step: {name}: spread {spread:.3f}", flush=True)
+        _state["looks"] = 0
+        return True
+    if _state["looks"] > PATIENCE:
         raise RuntimeError(f"the {name} viewport shows nothing (spread {spread:.3f})")
-    print(f"step: {name}: spread {spread:.3f}", flush=True)
+    return False
 
 
 def show(space, shading):
@@ -77,7 +85,8 @@ def advance():
     try:
         if _state["index"] >= 0:
             name = SHADINGS[_state["index"]]
-            check(name, shoot(name))
+            if not is_shown(name, shoot(name)):
+                return WAIT_S
         _state["index"] += 1
         if _state["index"] == len(SHADINGS):
             print("step: the window went through every shading", flush=True)
