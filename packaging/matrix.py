@@ -80,10 +80,13 @@ class Blender:
         user = self.place.inside / "user"
         environment |= {f"BLENDER_USER_{name.upper()}": user / name
                         for name in ("config", "scripts", "extensions", "datafiles")}
-        words = [self.program, "-noaudio", *([] if window else ["-b"]), *arguments]
+        shown = ["--window-geometry", 0, 0, 1280, 800] if window else ["-b"]
+        words = [self.program, "-noaudio", *shown, *arguments]
         if window:
             environment |= {"LIBGL_ALWAYS_SOFTWARE": 1}
-            words = ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", *words]
+            places.fresh(self.place.work / "display")
+            display = f"-screen 0 1280x800x24 -fbdir {self.place.inside / 'display'}"
+            words = ["xvfb-run", "-a", "-s", display, *words]
         done = self.place.run(*words, environment=environment)
         (self.results / f"{step}.log").write_text(done.stdout, encoding="utf-8")
         if done.returncode:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opens a window with the engine KESTREL and takes pictures of it; packaging/matrix.py runs it.
 
-    xvfb-run blender FILE.blend --python tests/matrix/viewport.py -- MODULE FOLDER
+    xvfb-run -s "-fbdir FOLDER/display" blender FILE.blend --python tests/matrix/viewport.py -- \\
+        MODULE FOLDER
 
 Shading is set to solid, material preview, rendered and solid again, with a screenshot of each in
 FOLDER. Prints `step: ...` lines and ends with status 0 when nothing was amiss, else 1. Once the engine
@@ -9,8 +10,10 @@ draws into the viewport, the rendered one must show the scene; until then Blende
 """
 
 import os
+import struct
 import sys
 import traceback
+import zlib
 from pathlib import Path
 
 import bpy
@@ -18,6 +21,7 @@ import numpy as np
 
 MODULE, FOLDER = sys.argv[sys.argv.index("--") + 1:][:2]
 FOLDER = Path(FOLDER)
+FRAME_BUFFER = FOLDER / "display" / "Xvfb_screen0"
 SHADINGS = ("SOLID", "MATERIAL", "RENDERED", "SOLID")
 WAIT_S = 6.0          # for a shading to show; software GL compiles its shaders meanwhile
 CONTENT_SPREAD = 0.02  # standard deviation of a picture, 0 to 1, that is more than a plain area
@@ -31,21 +35,37 @@ def window_and_area():
     return window, max(areas, key=lambda area: area.width * area.height)
 
 
+def read_display():
+    """What the virtual display shows, height x width x 3, 0 to 255, first row on top: the file that
+    Xvfb keeps its frame buffer in (X window dump format, 32 bits a pixel)."""
+    data = FRAME_BUFFER.read_bytes()
+    header = struct.unpack_from(">25I", data)
+    size, width, height, pitch, colors = header[0], header[4], header[5], header[12], header[19]
+    rows = np.frombuffer(data, np.uint8, pitch * height, size + 12 * colors).reshape(height, pitch)
+    return rows[:, :4 * width].reshape(height, width, 4)[..., 2::-1]
+
+
+def write_png(path, picture):
+    def chunk(kind, content):
+        check = zlib.crc32(kind + content)
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", check)
+
+    height, width, _ = picture.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in picture)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n"
+                     + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
 def shoot(name):
-    """Screenshot of the window; returns the 3D view's middle, height x width x 3, 0 to 1."""
-    window, area = window_and_area()
-    path = FOLDER / f"viewport_{name}.png"
-    with bpy.context.temp_override(window=window, area=area):
-        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
-        bpy.ops.screen.screenshot(filepath=str(path))
-    image = bpy.data.images.load(str(path))
-    width, height = image.size
-    pixels = np.empty(width * height * 4, np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    picture = pixels.reshape(height, width, 4)[..., :3]
+    """Screenshot of the display; returns the 3D view's middle, 0 to 1. Blender's own screenshots are
+    black in some combinations of its version and Mesa's."""
+    _, area = window_and_area()
+    picture = read_display()
+    write_png(FOLDER / f"viewport_{name}.png", picture)
     left, low = area.x + area.width // 4, area.y + area.height // 4
-    return picture[low:low + area.height // 2, left:left + area.width // 2]
+    top = picture.shape[0] - low - area.height // 2
+    return picture[top:top + area.height // 2, left:left + area.width // 2] / 255.0
 
 
 def draws():

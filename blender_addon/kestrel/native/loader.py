@@ -32,6 +32,7 @@ _library = None
 _error = ""
 _table = None
 _plugin_loads = None
+_device_text = None
 
 
 def library_path():
@@ -149,6 +150,16 @@ def parameter_table():
         found = library()
         _table = json.loads(found.parameter_table()) if found else []
     return _table
+
+
+def device_text():
+    """The OpenGL device that the library draws with, or why it has none; asked for once."""
+    global _device_text
+    if _device_text is None:
+        info = json.loads(require().device_info())
+        gl = info.get("gl") or {}
+        _device_text = gl.get("renderer") or f"No OpenGL: {info.get('gl_error', '')}"
+    return _device_text
 
 
 def image_plugin_available():
