@@ -1,28 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes dist/kestrel-VERSION-linux-x64.zip: the add-on with the built libraries inside.
+"""Makes dist/kestrel-VERSION-linux-x64.zip: the add-on with everything it needs inside.
 
     python3 packaging/make_zip.py [--build build] [--dist dist]
 
-The libraries use the system's Embree, TBB, libepoxy and OpenImageIO. The same input gives the same
-bytes. Prints the zip's path.
+One file for every Blender: an add-on for 3.4 to 4.1, an extension for 4.2 and later, as both
+installers take a zip of one folder. The libraries are self-contained (bundle.py); the image plug-in
+is not among them. The same input gives the same bytes. Prints the zip's path.
 """
 
 import argparse
 import platform
 import re
 import sys
+import tempfile
 import zipfile
 from pathlib import Path
 
+import bundle
+import elf
+import licences
+
 REPOSITORY = Path(__file__).resolve().parents[1]
 ADDON = REPOSITORY / "blender_addon" / "kestrel"
-LIBRARIES = ("libkestrel.so", "libkestrel_oiio.so")
 DATE = (2020, 1, 1, 0, 0, 0)  # of every entry
 
 
 def project_version():
     text = (REPOSITORY / "CMakeLists.txt").read_text()
     return re.search(r"project\(kestrel VERSION ([0-9.]+)", text).group(1)
+
+
+def machine():
+    return {"x86_64": "x64", "aarch64": "arm64"}.get(platform.machine(), platform.machine())
 
 
 def addon_files():
@@ -34,22 +43,26 @@ def addon_files():
             yield f"kestrel/{relative.as_posix()}", path
 
 
-def entries(build):
-    yield from addon_files()
-    for library in LIBRARIES:
-        yield f"kestrel/native/lib/{library}", build / library
-    yield "kestrel/LICENSE", REPOSITORY / "LICENSE"
-    yield "kestrel/LICENSES.md", REPOSITORY / "packaging" / "LICENSES.md"
+def entries(build, scratch):
+    """Every file as (name in the zip, bytes)."""
+    for name, path in addon_files():
+        yield name, path.read_bytes()
+    libraries, bundled = bundle.bundle(build / "libkestrel.so", scratch)
+    for path in libraries:
+        yield f"kestrel/native/lib/{path.name}", path.read_bytes()
+    for name, text in licences.texts(bundled.values()):
+        yield f"kestrel/{name}", text
 
 
 def write_zip(target, build):
     part = target.with_suffix(".part")
-    with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, path in entries(build):
+    with tempfile.TemporaryDirectory() as scratch, \
+            zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in entries(build, Path(scratch)):
             info = zipfile.ZipInfo(name, DATE)
-            info.external_attr = (0o755 if path.suffix == ".so" else 0o644) << 16
+            info.external_attr = (0o755 if ".so" in name else 0o644) << 16
             info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, path.read_bytes())
+            archive.writestr(info, data)
     part.replace(target)
 
 
@@ -58,13 +71,14 @@ def main():
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
     parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist")
     args = parser.parse_args()
-    missing = [str(path) for _, path in entries(args.build) if not path.is_file()]
-    if missing:
-        sys.exit(f"make_zip: not there: {', '.join(missing)}. Run './dev build' first.")
-    machine = {"x86_64": "x64", "aarch64": "arm64"}.get(platform.machine(), platform.machine())
+    if not (args.build / "libkestrel.so").is_file():
+        sys.exit(f"make_zip: there is no libkestrel.so in {args.build}. Run './dev build' first.")
     args.dist.mkdir(parents=True, exist_ok=True)
-    target = args.dist / f"kestrel-{project_version()}-linux-{machine}.zip"
-    write_zip(target, args.build)
+    target = args.dist / f"kestrel-{project_version()}-linux-{machine()}.zip"
+    try:
+        write_zip(target, args.build)
+    except (bundle.BundleError, elf.ElfError, licences.LicenceError) as error:
+        sys.exit(f"make_zip: {error}")
     print(target)
 
 

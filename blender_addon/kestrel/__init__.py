@@ -11,18 +11,36 @@ bl_info = {
     "category": "Render",
 }
 
-from . import engine, log, preferences, properties, ui  # noqa: E402 (Blender reads bl_info first)
+import sys  # noqa: E402 (Blender reads bl_info first)
+
+
+def _forget_modules():
+    """Drop the modules of an earlier version: after an update, a running Blender executes this file
+    anew and would find those in its place."""
+    prefix = __name__ + "."
+    for name in [name for name in sys.modules if name.startswith(prefix)]:
+        del sys.modules[name]
+        globals().pop(name.removeprefix(prefix), None)
+
+
+_forget_modules()
+
+from . import engine, log, preferences, properties, rivals, ui  # noqa: E402
 from .native import loader  # noqa: E402
 
 MODULES = (log, properties, preferences, engine, ui)
+IDLE_MODULES = (rivals,)  # of one that stands back for another Kestrel
+
+_registered = []
 
 
 def register():
-    for module in MODULES:
+    for module in IDLE_MODULES if rivals.active() else MODULES:
         module.register()
+        _registered.append(module)
 
 
 def unregister():
-    for module in reversed(MODULES):
-        module.unregister()
+    while _registered:
+        _registered.pop().unregister()
     loader.release()

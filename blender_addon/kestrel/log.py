@@ -2,6 +2,7 @@
 """Messages: the library's and the add-on's own, on the terminal and collected for the artist."""
 
 import contextlib
+import os
 import sys
 import threading
 
@@ -56,6 +57,9 @@ def register():
     if library is not None:
         _callback = capi.LogCallback(_from_library)
         library.set_log_callback(_callback)
+        if os.environ.get("KESTREL_LOG") == "debug":
+            _write("debug", f"Kestrel {library.version()} from {loader.library_path()}, "
+                            f"OpenGL device: {loader.device_text()}")
 
 
 def unregister():

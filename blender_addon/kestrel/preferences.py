@@ -18,6 +18,7 @@ class KestrelPreferences(bpy.types.AddonPreferences):
         column = self.layout.column()
         column.label(text=f"Kestrel {library.version()}", icon="CHECKMARK")
         column.label(text=str(loader.library_path()))
+        column.label(text=loader.device_text())
 
 
 def register():

@@ -20,12 +20,16 @@ NOT_FOR_KESTREL_PREFIXES = ("MATERIAL_PT_freestyle", "RENDER_PT_freestyle", "REN
                             "RENDER_PT_grease_pencil", "VIEWLAYER_PT_freestyle")
 
 
+def draw_text(layout, text):
+    """A message of several lines."""
+    column = layout.column(align=True)
+    for index, line in enumerate(textwrap.wrap(text, TEXT_WIDTH)):
+        column.label(text=line, icon="ERROR" if index == 0 else "BLANK1")
+
+
 def draw_library_error(layout):
     """Why nothing can be rendered, and what to do."""
-    column = layout.column(align=True)
-    lines = textwrap.wrap(loader.error(), TEXT_WIDTH)
-    for index, line in enumerate(lines):
-        column.label(text=line, icon="ERROR" if index == 0 else "BLANK1")
+    draw_text(layout, loader.error())
 
 
 class KestrelPanel:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the add-on's tests inside Blender, with the add-on of this checkout.
+"""Runs the add-on's tests inside Blender, with the add-on installed from its zip.
 
+    python3 tests/blender/run.py [--build build] --prepare      package and install it
     python3 tests/blender/run.py [--build build] [NAME ...]     NAME: camera for test_camera.py
     python3 tests/blender/run.py --list
-    blender -b --factory-startup --python tests/blender/run.py -- [NAME ...]
 
-The library is the build folder's, or that of KESTREL_LIBRARY; the Blender is that of
-KESTREL_BLENDER, or `blender`. Without a Blender the tests are skipped (exit status 77).
+The Blender is that of KESTREL_BLENDER, or `blender`; its user folder is BUILD/blender_user. Without a
+Blender the tests are skipped (exit status 77). KESTREL_LIBRARY may name another library to test.
 """
 
 import argparse
@@ -30,9 +30,32 @@ def parse(arguments):
     parser = argparse.ArgumentParser(prog="run.py", description=__doc__.split("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", choices=names() + [[]])
     parser.add_argument("--list", action="store_true", help="print the names, one a line")
+    parser.add_argument("--prepare", action="store_true", help="package and install the add-on")
     parser.add_argument("--build", type=Path, default=REPOSITORY / "build",
                         help="folder with libkestrel.so")
     return parser.parse_args(arguments)
+
+
+def user_folders(build):
+    """Environment that gives Blender a user folder of its own."""
+    user = build.resolve() / "blender_user"
+    return {f"BLENDER_USER_{name.upper()}": str(user / name)
+            for name in ("config", "scripts", "extensions")}
+
+
+def prepare(args, blender):
+    """Make the zip and install it as an artist would; returns the exit status."""
+    folders = user_folders(args.build)
+    shutil.rmtree(args.build / "blender_user", ignore_errors=True)
+    for folder in folders.values():
+        os.makedirs(folder)
+    made = subprocess.run(
+        [sys.executable, str(REPOSITORY / "packaging/make_zip.py"), "--build", str(args.build),
+         "--dist", str(args.build / "blender_user")], check=True, stdout=subprocess.PIPE, text=True)
+    return subprocess.run(
+        [blender, "-b", "-noaudio", "--python-exit-code", "1", "--python",
+         str(REPOSITORY / "packaging/install_addon.py"), "--", made.stdout.strip(), "--add-on"],
+        env={**os.environ, **folders}, check=False).returncode
 
 
 def run_outside(args):
@@ -41,9 +64,9 @@ def run_outside(args):
     if blender is None:
         print("SKIP: Blender is not installed (KESTREL_BLENDER may name one)")
         return SKIPPED
-    environment = dict(os.environ)
-    environment.setdefault("KESTREL_LIBRARY", str(args.build.resolve() / "libkestrel.so"))
-    environment["KESTREL_TEST_BLENDER"] = blender
+    if args.prepare:
+        return prepare(args, blender)
+    environment = {**os.environ, **user_folders(args.build), "KESTREL_TEST_BLENDER": blender}
     return subprocess.run(
         [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "--python",
          str(HERE / "run.py"), "--", *args.names], env=environment, check=False).returncode
@@ -53,8 +76,7 @@ def run_inside(args):
     """Run the tests in this Blender; returns whether all passed."""
     import addon_utils
     sys.dont_write_bytecode = True
-    sys.path[:0] = [str(HERE), str(REPOSITORY / "blender_addon"), str(REPOSITORY / "tests/parity")]
-    # As the user would; the module is found on the path instead of in the add-ons folder.
+    sys.path[:0] = [str(HERE), str(REPOSITORY / "tests/parity")]
     if addon_utils.enable("kestrel", default_set=True) is None:
         print("the add-on did not start; the reason stands above")
         return False

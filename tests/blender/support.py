@@ -20,7 +20,6 @@ from kestrel import engine, session
 from mathutils import Matrix, Vector
 
 ADDON = Path(__file__).resolve().parents[2] / "blender_addon"
-LIBRARY = os.environ.get("KESTREL_LIBRARY", "")
 
 
 class SceneTest(unittest.TestCase):
@@ -227,18 +226,14 @@ def textured(name, picture, kind="ShaderNodeEmission", **settings):
 
 # ---- another Blender -------------------------------------------------------------------------
 
-def run_blender(folder, *arguments, library=LIBRARY):
-    """A Blender of its own user folder, with the add-on installed and enabled there; returns the
-    finished process."""
-    user = Path(folder) / "user"
-    addons = user / "scripts" / "addons"
-    addons.mkdir(parents=True, exist_ok=True)
-    if not (addons / "kestrel").exists():
-        (addons / "kestrel").symlink_to(ADDON / "kestrel")
-    (user / "config").mkdir(exist_ok=True)
-    environment = dict(os.environ, BLENDER_USER_SCRIPTS=str(user / "scripts"),
-                       BLENDER_USER_CONFIG=str(user / "config"), KESTREL_LIBRARY=library,
-                       PYTHONDONTWRITEBYTECODE="1")
+def run_blender(folder, *arguments, library=None):
+    """A Blender with settings of its own in `folder`, and the installed add-on enabled; returns the
+    finished process. `library` takes the place of the packaged one."""
+    config = Path(folder) / "user_config"
+    config.mkdir(exist_ok=True)
+    environment = dict(os.environ, BLENDER_USER_CONFIG=str(config), PYTHONDONTWRITEBYTECODE="1")
+    if library is not None:
+        environment["KESTREL_LIBRARY"] = library
     blender = os.environ.get("KESTREL_TEST_BLENDER") or bpy.app.binary_path
     return subprocess.run([blender, "-b", "-noaudio", "--addons", "kestrel", *arguments],
                           env=environment, capture_output=True, text=True, check=False)

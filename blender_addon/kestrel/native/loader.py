@@ -6,8 +6,13 @@ nowhere else. A failure is remembered as a text for the interface; the add-on st
 """
 
 import ctypes
+import hashlib
 import json
 import os
+import shutil
+import sys
+import tempfile
+import types
 from pathlib import Path
 
 from . import capi
@@ -15,14 +20,19 @@ from . import capi
 PACKAGED = Path(__file__).resolve().parent / "lib" / "libkestrel.so"
 PLUGIN_NAME = "libkestrel_oiio.so"
 
-# Blender has loaded libraries of its own, perhaps other versions of those that Kestrel needs, such
-# as Embree: their functions must not take the place of ours.
-MODE = ctypes.RTLD_LOCAL | getattr(os, "RTLD_DEEPBIND", 0)
+# Not RTLD_DEEPBIND: the allocator must be Blender's. The packaged library needs no protection from
+# Blender's own Embree and TBB, as packaging/bundle.py gave all its symbols private names.
+MODE = ctypes.RTLD_LOCAL
+
+# Where the process notes which library it has, for whichever Kestrel asks next: an updated one, or
+# another one in another folder.
+NOTE = "_kestrel_library"
 
 _library = None
 _error = ""
 _table = None
 _plugin_loads = None
+_device_text = None
 
 
 def library_path():
@@ -31,13 +41,60 @@ def library_path():
     return Path(chosen) if chosen else PACKAGED
 
 
+def _digest(path):
+    return hashlib.blake2b(path.read_bytes()).hexdigest()
+
+
+def _loaded(path):
+    """The library that this process has loaded already, or None. Raises KestrelError where it is not
+    the one at `path`: two at once would share the libraries that they need, whatever their versions.
+    """
+    note = sys.modules.get(NOTE)
+    if note is None:
+        return None
+    if note.path != os.path.realpath(path):
+        raise capi.KestrelError(
+            f"Two Kestrels at once: this Blender has already loaded {note.path}. Disable or remove "
+            "one of the two in the preferences and restart Blender.")
+    if note.digest != _digest(path):
+        raise capi.KestrelError(
+            "Kestrel was updated while Blender is running, and Blender still holds the old "
+            "library. Save your work and restart Blender.")
+    return note.cdll
+
+
+def _open(path):
+    """Load the library and note it. Raises OSError."""
+    note = types.ModuleType(NOTE)
+    note.path, note.digest = os.path.realpath(path), _digest(path)
+    if _may_be_overwritten(path):
+        with tempfile.TemporaryDirectory(prefix="kestrel-") as folder:
+            try:
+                shutil.copytree(path.parent, folder, dirs_exist_ok=True)
+                note.cdll = ctypes.CDLL(str(Path(folder) / path.name), mode=MODE)
+            except OSError:  # no space, or a folder for temporary files that forbids code
+                note.cdll = ctypes.CDLL(str(path), mode=MODE)
+    else:
+        note.cdll = ctypes.CDLL(str(path), mode=MODE)
+    sys.modules[NOTE] = note
+    return note.cdll
+
+
+def _may_be_overwritten(path):
+    """Whether an update may write into the file while it is in use, which ends the process: Blender's
+    installer of add-ons does, that of extensions puts new files in the place of the old ones. A
+    library with the image plug-in beside it was not put there by either."""
+    is_extension = __package__.startswith("bl_ext.")
+    return path == PACKAGED and not is_extension and not path.with_name(PLUGIN_NAME).exists()
+
+
 def _load(path):
     if not path.is_file():
         raise capi.KestrelError(
             f"There is no Kestrel library at {path}. Install the add-on from its zip file, or name "
             "a libkestrel.so in the environment variable KESTREL_LIBRARY and restart Blender.")
     try:
-        cdll = ctypes.CDLL(str(path), mode=MODE)
+        cdll = _loaded(path) or _open(path)
     except OSError as error:
         raise capi.KestrelError(
             f"The Kestrel library could not be loaded: {error}. Install what is missing, or an "
@@ -93,6 +150,16 @@ def parameter_table():
         found = library()
         _table = json.loads(found.parameter_table()) if found else []
     return _table
+
+
+def device_text():
+    """The OpenGL device that the library draws with, or why it has none; asked for once."""
+    global _device_text
+    if _device_text is None:
+        info = json.loads(require().device_info())
+        gl = info.get("gl") or {}
+        _device_text = gl.get("renderer") or f"No OpenGL: {info.get('gl_error', '')}"
+    return _device_text
 
 
 def image_plugin_available():
