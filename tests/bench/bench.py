@@ -131,12 +131,13 @@ def install_addon(args):
         archive.extractall(addons)
 
 
-def blender(args, *arguments, display=False):
+def blender(args, *arguments, display=False, environment={}):
     executable = os.environ.get("KESTREL_BLENDER", "blender")
     if not shutil.which(executable):
         raise Missing(f"there is no '{executable}'")
     command = (["xvfb-run", "-a", executable] if display else [executable, "-b"])
-    environment = dict(os.environ, BLENDER_USER_SCRIPTS=str(args.work / "scripts"))
+    environment = {**os.environ, **environment,
+                   "BLENDER_USER_SCRIPTS": str(args.work / "scripts")}
     result = subprocess.run(command + [str(a) for a in arguments], capture_output=True, text=True,
                             env=environment)
     if result.returncode:
@@ -144,12 +145,16 @@ def blender(args, *arguments, display=False):
     return result.stdout
 
 
-def f12(args, blend, engine):
-    """Milliseconds of one whole render() call, and the peak memory of the process in MB."""
+def f12(args, blend, run):
+    """Milliseconds of one whole render() call, and the peak memory of the process in MB. KESTREL is
+    the install from source, whose image plug-in reads files; KESTREL_ZIP the zip alone, to which
+    Blender hands over pixels."""
+    engine = "KESTREL" if run == "KESTREL_ZIP" else run
     display = engine == "BLENDER_EEVEE"
+    plugin = {"KESTREL_IMAGE_PLUGIN": str(args.build / "libkestrel_oiio.so")}
     out = blender(args, *([] if display else ["--factory-startup"]), blend, "--python-exit-code", 1,
                   "--python", ROOT / "tests" / "bench" / "blender_f12.py", "--", engine,
-                  display=display)
+                  display=display, environment=plugin if run == "KESTREL" else {})
     line = next(x for x in out.splitlines() if x.startswith("F12 "))
     return json.loads(line[4:])
 
@@ -159,7 +164,7 @@ def measure_blender(args, repetitions):
     blend = args.work / "sponza_spheres.blend"
     blender(args, "--factory-startup", "--python-exit-code", 1, "--python",
             ROOT / "scenes" / "blend" / "sponza_spheres.py", "--", "--out", blend)
-    engines = ["KESTREL", "CYCLES"] + ([] if args.quick else ["BLENDER_EEVEE"])
+    engines = ["KESTREL", "KESTREL_ZIP", "CYCLES"] + ([] if args.quick else ["BLENDER_EEVEE"])
     runs = {engine: [] for engine in engines}
     for _ in range(repetitions + 1):  # engines take turns; the first round warms up
         for engine in engines:
@@ -168,7 +173,7 @@ def measure_blender(args, repetitions):
     for engine, results in runs.items():
         row_c[f"{engine}_ms"] = statistics.median(r["ms"] for r in results[1:])
         row_m[f"{engine}_mb"] = statistics.median(r["peak_mb"] for r in results[1:])
-        if engine != "KESTREL":
+        if not engine.startswith("KESTREL"):
             row_c[f"{engine}_over_KESTREL"] = row_c[f"{engine}_ms"] / row_c["KESTREL_ms"]
             row_m[f"KESTREL_over_{engine}"] = row_m["KESTREL_mb"] / row_m[f"{engine}_mb"]
     if args.quick:

@@ -53,7 +53,9 @@ def pixels(image):
         values = rgba
     if image.is_float:
         return values
-    return np.rint(np.clip(values, 0.0, 1.0) * 255.0).astype(np.uint8)
+    values *= 255.0  # bytes over 255: whole numbers again, up to rounding
+    values += 0.5
+    return values.astype(np.uint8)
 
 
 def _as_file(export, image, ident, options, extra):
