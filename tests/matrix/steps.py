@@ -153,13 +153,18 @@ def rivals():
     tell(f"{second} stood back for {MODULE}")
 
 
+def same(picture, other):
+    """Up to rounding: Blender 3.4 adds up vertex normals in whatever order its threads come."""
+    return abs(picture - other).max() < 1e-4
+
+
 def check_second(second, before):
     addon_utils.enable(second, default_set=True)
     module = sys.modules[second]
     expect("Two Kestrels at once" in sys.modules[f"{second}.rivals"]._text,
            "the second Kestrel says nothing")
     expect(engine_owner() == MODULE, f"the engine is {engine_owner()}'s now")
-    expect((render_small() == before).all(), "the picture changed")
+    expect(same(render_small(), before), "the picture changed")
     # Nor does it take over later in this process, where the first one's library is still loaded.
     addon_utils.disable(MODULE)
     addon_utils.disable(second)
@@ -168,7 +173,7 @@ def check_second(second, before):
            f"a second library was loaded: {module.loader.error()}")
     addon_utils.disable(second)
     addon_utils.enable(MODULE)
-    expect((render_small() == before).all(), "the picture changed after enabling again")
+    expect(same(render_small(), before), "the picture changed after enabling again")
 
 
 def update():
