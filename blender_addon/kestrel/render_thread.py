@@ -129,14 +129,14 @@ class RenderThread(threading.Thread):
         self._redraw()
 
     def _frame(self, view, size, settings, progress):
-        """Render; returns (pixels in the library's memory, milliseconds)."""
-        begin = time.perf_counter()
+        """Render; returns (pixels in the library's memory, milliseconds of rendering)."""
         with self.editing:
             scene = self._session.scene
             scene.set_camera(view.camera())
             for name, value in settings.items():
                 scene.set_setting(name, str(value))
             scene.commit()
+        begin = time.perf_counter()
         self._session.render(*size, progress)
         pixels = self._session.renderer.read_pass("Combined", *size)
         return pixels, 1e3 * (time.perf_counter() - begin)
@@ -149,7 +149,7 @@ class RenderThread(threading.Thread):
         pixels, ms = self._frame(
             view, size, {"budget_ms": quality.budget_ms, "samples": 1, "first_sample": 0},
             lambda _fraction, _status: not self._stopping)
-        if not quality.pixel_size:
+        if not quality.pixel_size and self.picture is not None:  # the first builds what all use
             self._auto_size.learn(ms, quality.budget_ms, max(FRAME_MS, 2.0 * quality.budget_ms),
                                   time.monotonic())
         self.picture = Picture(pixels.copy(), *size, view, 0)

@@ -4,11 +4,9 @@
 import os
 from pathlib import Path
 
-import addon_utils
 import bpy
 import numpy as np
-from kestrel import session, viewport
-from kestrel.pixel_size import COARSEST, RETRY_S, PixelSize
+from kestrel import session
 from mathutils import Matrix
 from viewport_support import ViewportTest, psnr
 
@@ -114,90 +112,3 @@ class MotionTest(ViewportTest):
         # One picture has about 8 MiB; the first resizes fill caches.
         print(f"resident memory: {used[5]:.0f} MiB, after {RESIZES - 6} resizes {used[-1]:.0f}")
         self.assertLess(used[-1] - used[5], 30.0)
-
-    def test_two_views_at_once(self):
-        self.still_life()
-        self.look()
-        self.scene.kestrel.viewport_samples = 1
-        self.render_shading()
-        yield self.settled
-        with self.context():
-            bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
-        yield lambda: len(viewport.open_viewports()) == 2 and self.settled()
-        views = [item.picture.view for item in viewport.open_viewports()]
-        self.assertTrue(all(400 < view.region[0] < 500 for view in views))
-        self.assertEqual(session.count(), 2)
-
-
-class EndTest(ViewportTest):
-    """Nothing is left of a viewport, whatever it was doing."""
-
-    samples = 4096  # never done
-
-    def begin(self):
-        self.still_life()
-        self.look()
-        self.render_shading()
-
-    def started(self):
-        return bool(viewport.open_viewports()) and self.viewport.picture is not None
-
-    def check_gone(self, thread):
-        self.assertEqual(session.count(), 0)
-        self.assertEqual(viewport.open_viewports(), [])
-        self.assertFalse(thread.is_alive())
-
-    def test_other_shading(self):
-        for _ in range(3):
-            self.begin()
-            yield self.started
-            thread = self.viewport._thread
-            self.space.shading.type = "SOLID"
-            yield lambda: not viewport.open_viewports()
-            self.check_gone(thread)
-
-    def test_another_file(self):
-        self.begin()
-        yield self.started
-        thread = self.viewport._thread
-        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-        self.check_gone(thread)
-
-    def test_add_on_disabled(self):
-        self.begin()
-        yield self.started
-        thread = self.viewport._thread
-        addon_utils.disable("kestrel")
-        self.addCleanup(addon_utils.enable, "kestrel")
-        self.check_gone(thread)
-        yield None
-
-
-class PixelSizeTest(ViewportTest):
-    """The automatic pixel size, with made-up times."""
-
-    def setUp(self):
-        pass
-
-    def follow(self, ms_of_size, frames=50):
-        size = PixelSize()
-        values = []
-        for frame in range(frames):
-            values.append(size.value)
-            size.learn(ms_of_size(size.value), 20.0, 40.0, 0.04 * frame)
-        return values
-
-    def test_fast_scenes_are_sharp(self):
-        self.assertEqual(self.follow(lambda size: 5.0 + 15.0 / size ** 2)[-1], 1)
-
-    def test_budget_does_not_keep_it_coarse(self):
-        self.assertEqual(self.follow(lambda size: 20.0 + 10.0 / size ** 2)[-1], 1)
-
-    def test_slow_scenes_stay_in_time(self):
-        values = self.follow(lambda size: 320.0 / size ** 2)
-        self.assertEqual(values[-1], 4)
-        slow = sum(320.0 / v ** 2 > 40.0 for v in values)
-        self.assertLessEqual(slow, 50 * 0.04 / RETRY_S + 1)
-
-    def test_very_slow_scenes_are_as_coarse_as_allowed(self):
-        self.assertEqual(self.follow(lambda size: 1e5 / size ** 2)[-1], COARSEST)

@@ -3,7 +3,7 @@
 
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
-from kestrel import viewport
+from kestrel import session, viewport
 from kestrel.native import capi
 from kestrel.sync.view import region_view
 from mathutils import Matrix, Vector
@@ -126,3 +126,21 @@ class ViewTest(ViewportTest):
         with self.context():
             bpy.ops.screen.region_quadview()
         yield lambda: len(viewport.open_viewports()) == 1 and self.settled()
+
+    def test_two_views_at_once(self):
+        self.still_life()
+        self.look()
+        self.scene.kestrel.viewport_samples = 1
+        with self.context():
+            bpy.ops.screen.back_to_previous()
+        yield None
+        next(a for a in self.window.screen.areas if a.type != "VIEW_3D").type = "VIEW_3D"
+        areas = [a for a in self.window.screen.areas if a.type == "VIEW_3D"]
+        for area in areas:
+            area.spaces.active.shading.type = "RENDERED"
+        yield lambda: len(viewport.open_viewports()) == 2 and self.settled()
+        sizes = [item.picture.view.region for item in viewport.open_viewports()]
+        regions = [next((r.width, r.height) for r in area.regions if r.type == "WINDOW")
+                   for area in areas]
+        self.assertCountEqual(sizes, regions)
+        self.assertEqual(session.count(), 2)
