@@ -173,7 +173,8 @@ void Renderer::Impl::render(const Progress& report_to) {
 /// tiles through all stages, so that their data stays in its cache.
 void Renderer::Impl::render_sample(int sample) {
   const Settings& settings = scene->settings;
-  const FrameInputs inputs{*scene, width, height, subpixel_offset(settings, sample),
+  const FrameInputs inputs{*scene, width, height,
+                           subpixel_offset(settings, settings.first_sample + sample),
                            settings.budget_ms / static_cast<float>(settings.samples)};
   if (limited() || raster) {
     Workspace& work = workspaces.local();

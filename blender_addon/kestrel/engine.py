@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The render engine: F12 and background rendering.
+"""The render engine: F12, background rendering, and 3D views in Rendered shading.
 
-Blender calls update() with its data locked and then render(), once for each view layer. Everything
-that is read from Blender is read in update().
+For F12 Blender calls update() with its data locked and then render(), once for each view layer.
+Everything that is read from Blender is read in update(). Each 3D view has an engine object of its
+own, whose view_update() and view_draw() Blender calls on its main thread.
 """
 
 import contextlib
 import sys
 import threading
 import traceback
+import weakref
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import compat, log, passes, session, sync
+from . import compat, log, passes, session, sync, viewport
 from .native import capi
 
 POLL_S = 0.05  # how often the status bar is written and Escape is looked for
@@ -48,6 +50,20 @@ class Frame(threading.Thread):
         self._session.renderer.cancel()
 
 
+class Redraw:
+    """Asks Blender to draw an engine's 3D view again, from any thread, while there is one. The
+    engine object itself is not kept alive."""
+
+    def __init__(self, engine):
+        self._engine = weakref.ref(engine)
+
+    def __call__(self):
+        try:
+            self._engine().tag_redraw()
+        except (AttributeError, ReferenceError):  # the view is gone
+            pass
+
+
 class KestrelRenderEngine(bpy.types.RenderEngine):
     bl_idname = "KESTREL"
     bl_label = "Kestrel"
@@ -58,6 +74,10 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
     _session = None
     _key = None
     _size = (0, 0)
+    _viewport = None
+    _error = ""  # why the 3D view cannot follow Blender's data
+
+    # ---- what Blender calls ----
 
     def update(self, data, depsgraph):
         self._session = None
@@ -82,7 +102,50 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)
 
-    # ---- steps ----
+    def view_update(self, context, depsgraph):
+        if depsgraph.scene != context.scene:
+            return  # another window's
+        with self._keeping_errors():
+            if self._viewport is not None and (self._error or self._viewport.error):
+                self._viewport.close()
+            self._error = ""
+            self._open_viewport().update(depsgraph, context.space_data)
+
+    def view_draw(self, context, depsgraph):
+        with self._keeping_errors():
+            self._open_viewport().draw(self, context, depsgraph)
+        self._write(self._error or self._viewport.error or self._viewport.status)
+
+    # ---- 3D views ----
+
+    def _open_viewport(self):
+        if self._viewport is None or not self._viewport.is_open:
+            self._viewport = viewport.Viewport(Redraw(self))
+            # No __del__(): its `self` may be gone for Blender already, and with it this attribute.
+            weakref.finalize(self, self._viewport.close).atexit = False
+        return self._viewport
+
+    def _write(self, text):
+        """Into the 3D view's corner."""
+        self.update_stats(text, "")
+
+    @contextlib.contextmanager
+    def _keeping_errors(self):
+        """What goes wrong in this block is written into the 3D view until Blender's data change,
+        and then all is read afresh."""
+        with log.collecting() as messages:
+            try:
+                yield
+            except capi.KestrelError as error:
+                self._error = str(error)
+            except Exception as error:
+                traceback.print_exc(file=sys.stdout)
+                self._error = (f"Kestrel made a mistake ({type(error).__name__}: {error}). Please "
+                               "report it with the lines above this one in the terminal.")
+        for text in messages:
+            self.report({"WARNING"}, text)
+
+    # ---- F12 ----
 
     def _camera(self, depsgraph):
         camera = self.camera_override or depsgraph.scene_eval.camera
@@ -138,15 +201,27 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
 
 @persistent
 def _forget_sessions(*_arguments):
+    viewport.close_all()
     session.drop_all()
+
+
+@persistent
+def _read_all(*_arguments):
+    viewport.read_all()
+
+
+HANDLERS = {"load_pre": _forget_sessions, "undo_post": _read_all, "redo_post": _read_all}
 
 
 def register():
     bpy.utils.register_class(KestrelRenderEngine)
-    bpy.app.handlers.load_pre.append(_forget_sessions)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
-    bpy.app.handlers.load_pre.remove(_forget_sessions)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
+    viewport.close_all()
     bpy.utils.unregister_class(KestrelRenderEngine)
     session.drop_all()

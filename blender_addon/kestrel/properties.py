@@ -50,9 +50,17 @@ def group(name, annotations):
     return type(name, (bpy.types.PropertyGroup,), {"__annotations__": annotations})
 
 
-def table_group(name, scope):
-    return group(name, {row["name"]: table_property(row) for row in loader.parameter_table()
-                        if row["scope"] == scope})
+def table_group(name, scope, **more):
+    rows = {row["name"]: table_property(row) for row in loader.parameter_table()
+            if row["scope"] == scope}
+    return group(name, {**rows, **more})
+
+
+def scene_group():
+    return table_group("KestrelSceneSettings", "scene", viewport_samples=IntProperty(
+        name="Viewport Samples", default=16, min=1, max=65536, soft_max=1024,
+        description="Anti-aliasing samples per pixel that a still 3D view adds up. While "
+                    "something changes, each frame has one"))
 
 
 def _passes_changed(_group, context):
@@ -82,7 +90,7 @@ _registered = []  # (class, owner type)
 
 
 def register():
-    for made, owner in ((table_group("KestrelSceneSettings", "scene"), bpy.types.Scene),
+    for made, owner in ((scene_group(), bpy.types.Scene),
                         (table_group("KestrelObjectSettings", "object"), bpy.types.Object),
                         (view_layer_group(), bpy.types.ViewLayer),
                         (material_group(), bpy.types.Material)):

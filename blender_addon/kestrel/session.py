@@ -40,6 +40,9 @@ class Session:
         self.sent_settings = set()  # units that were given settings
         self.warned = set()         # texts that were already said
         self.means = {}             # (kind of mean, texture, its content): mean colour
+        self.values = {}            # name: settings, world and what else is no item
+        self.shapes = {}            # mesh key: [(mesh id, slots), ...] of the last export
+        self.edits = 0              # how often anything was sent that is not as it was
         self._busy = threading.Lock()
 
     def render(self, width, height, progress):
@@ -65,8 +68,9 @@ class Export:
     REMOVAL_ORDER = (capi.KIND_OBJECT, capi.KIND_LIGHT, capi.KIND_MATERIAL, capi.KIND_TEXTURE,
                      capi.KIND_MESH)
 
-    def __init__(self, session, say, environment_ior=1.0):
-        """`say(text)` takes warnings; each text is said once per session."""
+    def __init__(self, session, say, environment_ior=1.0, touched=None):
+        """`say(text)` takes warnings; each text is said once per session. `touched`: keys of the
+        objects and data whose geometry may have changed since the last export, None for all."""
         self.session = session
         self.environment_ior = environment_ior
         self.scene = session.scene
@@ -75,6 +79,8 @@ class Export:
         self.meshes = {}    # evaluated data: mesh id
         self.materials = {}  # material key: id
         self.textures = {}  # texture reference: id
+        self._touched = touched
+        self._shapes = {}   # as Session.shapes
 
     def warn(self, text):
         if text not in self.session.warned:
@@ -97,6 +103,28 @@ class Export:
         if self.session.sent.get((kind, ident)) != content:
             send()
             self.session.sent[kind, ident] = content
+            self.session.edits += 1
+
+    def note(self, name, value):
+        """Count an edit if this is not what `name` was the last time; it is sent in any case."""
+        if self.session.values.get(name) != value:
+            self.session.values[name] = value
+            self.session.edits += 1
+
+    def unchanged_mesh(self, key, owner_key, slot_count):
+        """Id (0: no faces) of the mesh of this key if it is as it was, else None."""
+        if self._touched is None or key in self._touched or owner_key in self._touched:
+            return None
+        before = self.session.shapes.get(key, ())
+        if len(before) != 1 or before[0][1] != slot_count or key in self._shapes:
+            return None
+        ident = before[0][0]
+        if ident:
+            self._met.add((capi.KIND_MESH, ident))
+        return ident
+
+    def remember_mesh(self, key, ident, slot_count):
+        self._shapes.setdefault(key, []).append((ident, slot_count))
 
     def put_object(self, ident, description, matrix):
         """`description`: name, unit, mesh and materials. Only the matrix is sent if it alone
@@ -110,15 +138,17 @@ class Export:
         else:
             self.scene.set_object(ident, *description, matrix)
         self.session.sent[key] = (description, matrix)
+        self.session.edits += 1
 
     def finish(self):
-        """Remove what is gone and publish the rest."""
+        """Remove what is gone. What was sent is seen after the scene's commit."""
         gone = set(self.session.sent) - self._met
         for kind in self.REMOVAL_ORDER:
             for item in sorted(item for item in gone if item[0] == kind):
                 self.scene.remove(*item)
                 del self.session.sent[item]
-        self.scene.commit()
+        self.session.edits += len(gone)
+        self.session.shapes = self._shapes
 
 
 def acquire(key):

@@ -80,7 +80,7 @@ class KESTREL_RENDER_PT_library(KestrelPanel, bpy.types.Panel):
 
 class KESTREL_RENDER_PT_sampling(TablePanel, bpy.types.Panel):
     bl_label = "Sampling"
-    names = ("samples", "pixel_filter", "filter_width")
+    names = ("viewport_samples", "samples", "pixel_filter", "filter_width")
 
 
 class KESTREL_RENDER_PT_budget(TablePanel, bpy.types.Panel):
@@ -103,6 +103,10 @@ class KESTREL_RENDER_PT_performance(TablePanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = {"DEFAULT_CLOSED"}
     names = ("primary", "tracer", "threads", "validate_areas")
+
+    def draw(self, context):
+        super().draw(context)
+        self.layout.prop(context.scene.render, "preview_pixel_size", text="Viewport Pixel Size")
 
 
 class KESTREL_OBJECT_PT_tracing(TablePanel, bpy.types.Panel):

@@ -146,6 +146,10 @@ const std::vector<Row<Settings>>& scene_rows() {
       row(&S::samples,
           {"samples", kScene, kInt, "16", 1, 65536, {}, "", "",
            "Anti-aliasing samples per pixel. The time grows in proportion"}),
+      row(&S::first_sample,
+          {"first_sample", kScene, kInt, "0", 0, 1 << 24, {}, "", "",
+           "Number of the first sample. Pictures of consecutive samples, weighted by how many "
+           "each has, add up to the picture of all of them"}),
       row(&S::pixel_filter,
           {"pixel_filter", kScene, kEnum, "blackman_harris", 0, 0, {"box", "blackman_harris"}, "",
            "", "How samples are weighted around a pixel's centre"}),

@@ -33,6 +33,7 @@ struct Settings {
   Primary primary = Primary::automatic;
   TracerKind tracer = TracerKind::automatic;
   int samples = 16;
+  int first_sample = 0;
   PixelFilter pixel_filter = PixelFilter::blackman_harris;
   float filter_width = 1.5f;
   ShadowMode shadow_mode = ShadowMode::hard;

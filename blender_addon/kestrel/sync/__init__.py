@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From an evaluated depsgraph to the core's scene."""
 
+from .. import compat
 from ..session import Export
 from .camera import sync_camera
 from .object import sync_objects
 from .settings import sync_settings
 from .world import sync_world
+
+# What a viewport decides from frame to frame.
+VIEWPORT_SETTINGS = ("budget_ms", "samples", "first_sample")
 
 
 def export_depsgraph(session, depsgraph, camera, say):
@@ -21,4 +25,25 @@ def export_depsgraph(session, depsgraph, camera, say):
     sync_settings(export, scene, ambient)
     sync_objects(export, depsgraph)
     export.finish()
+    export.scene.commit()
     return size
+
+
+def export_viewport(session, depsgraph, space, say, touched=None):
+    """Send everything that a 3D view (`space`) shows, but for the camera and without a commit.
+
+    `touched`: what touched_geometry() says, None to read every mesh. Raises KestrelError; the
+    session is then unfit for use.
+    """
+    scene = depsgraph.scene_eval
+    export = Export(session, say, scene.kestrel.environment_ior, touched)
+    ambient = sync_world(export, scene.world)
+    sync_settings(export, scene, ambient, VIEWPORT_SETTINGS)
+    sync_objects(export, depsgraph, lambda obj: obj.visible_in_viewport_get(space))
+    export.finish()
+
+
+def touched_geometry(depsgraph):
+    """Keys of the objects and their data whose geometry this evaluation changed."""
+    return {compat.datablock_key(update.id.original) for update in depsgraph.updates
+            if update.is_updated_geometry}

@@ -76,11 +76,18 @@ def sync_mesh(export, obj):
     own = original.modifiers or obj.type != "MESH"
     key = compat.datablock_key(original if own else original.data)
     slot_count = len(obj.material_slots)
-    if obj.type == "MESH" and not obj.data.is_editmode:
-        ident = _send(export, obj.data, key, obj.data.name_full, slot_count)
-    else:
-        mesh = obj.to_mesh()
-        ident = _send(export, mesh, key, original.name_full, slot_count) if mesh else 0
-        obj.to_mesh_clear()
+    ident = export.unchanged_mesh(key, compat.datablock_key(original), slot_count)
+    if ident is None:
+        ident = _read(export, obj, key, slot_count)
     export.meshes[identity] = ident
+    export.remember_mesh(key, ident, slot_count)
+    return ident
+
+
+def _read(export, obj, key, slot_count):
+    if obj.type == "MESH" and not obj.data.is_editmode:
+        return _send(export, obj.data, key, obj.data.name_full, slot_count)
+    mesh = obj.to_mesh()
+    ident = _send(export, mesh, key, obj.original.name_full, slot_count) if mesh else 0
+    obj.to_mesh_clear()
     return ident

@@ -28,10 +28,12 @@ def columns(matrix):
 class Objects:
     """Sends the objects of one evaluation."""
 
-    def __init__(self, export, override):
-        """`override`: the view layer's material for everything, or None."""
+    def __init__(self, export, override, shown=None):
+        """`override`: the view layer's material for everything, or None. `shown(object)` says
+        whether an object, or what it places, is drawn; None: all are."""
         self.export = export
         self.override = override
+        self.shown = shown
         self.settings = rows("object")
         self.units = set()  # whose settings are set
         self.keys = {}      # original object: its key
@@ -56,6 +58,8 @@ class Objects:
         if path:
             owner = instance.parent
             key = b"%b/%b/%b" % (self.key_of(owner.original), key, path)
+        if self.shown and not self.shown(owner):
+            return
         if obj.type == "LIGHT":
             sync_light(self.export, key, obj.data, matrix)
         elif obj.type in GEOMETRY:
@@ -99,6 +103,7 @@ class Objects:
                                     for row in self.settings):
             return
         sent.add(unit)
+        self.export.note(("unit", unit), tuple(values.values()))
         for row in self.settings:
             self.export.scene.set_object_setting(ident, row["name"],
                                                  as_text(row, values[row["name"]]))
@@ -109,7 +114,7 @@ def default_value(row):
     return float(row["default"]) if row["type"] == "float" else row["default"]
 
 
-def sync_objects(export, depsgraph):
-    objects = Objects(export, depsgraph.view_layer_eval.material_override)
+def sync_objects(export, depsgraph, shown=None):
+    objects = Objects(export, depsgraph.view_layer_eval.material_override, shown)
     for instance in depsgraph.object_instances:
         objects.add(instance)

@@ -103,5 +103,6 @@ def sync_world(export, world):
     item.kind = capi.WORLD_COLOR
     item.map_from_world[:] = (1, 0, 0, 0, 1, 0, 0, 0, 1)
     ambient = nodes.BLACK if world is None else _fill(export, world, item)
+    export.note("world", bytes(item))
     export.scene.set_world(item)
     return ambient
