@@ -7,7 +7,7 @@ from unittest import mock
 
 import bpy
 import numpy as np
-from kestrel import engine, session, viewport
+from kestrel import engine, viewport
 from kestrel.native import capi
 from mathutils import Quaternion, Vector
 from support import SceneTest, diffuse, shader_material
@@ -142,9 +142,6 @@ class ViewportTest(SceneTest):
         patch.start()
         self.addCleanup(patch.stop)
         return seconds
-
-    def session_count(self):
-        return session.count()
 
 
 def psnr(a, b):
