@@ -35,7 +35,10 @@ class CameraRays {
     const vec2 at = corner_ + (vec2(first_pixel_ + ivec2(x, y)) + sample_) * scale_;
     if (camera_.projection == Projection::orthographic) {
       const vec3 origin = position_ + at.x * right_ + at.y * up_;
-      return {origin, -backward_, camera_.near_clip, camera_.far_clip};
+      // A near plane behind the camera: rays must not begin at negative distances.
+      const float behind = glm::max(-camera_.near_clip, 0.0f);
+      return {origin + behind * backward_, -backward_, camera_.near_clip + behind,
+              camera_.far_clip + behind};
     }
     const vec3 along = at.x * right_ + at.y * up_ - backward_;
     const float length = glm::length(along);

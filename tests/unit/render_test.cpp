@@ -306,6 +306,16 @@ TEST(Render, DepthIsLinearAndReversed) {
   EXPECT_NEAR(q.at(8, 8, "ReversedDepth").x, 0.1f * 90.0f / (10.0f * 99.9f), 1e-6f);
 }
 
+TEST(Render, OrthographicViewsMayBeginBehindTheCamera) {
+  SceneMaker s;
+  s.object("floor", kFloor(), 0);
+  s.scene->camera.near_clip = -50.0f;
+  s.scene->camera.world_from_camera[3] -= vec3(0.0f, 0.0f, 15.0f);  // below the floor
+  const Picture p(s);
+  EXPECT_EQ(p.at(8, 8, "ObjectId").x, 1.0f);
+  EXPECT_NEAR(p.at(8, 8, "Depth").x, -5.0f, 1e-4f);
+}
+
 /// Many balls of every kind of material under several lights.
 SceneMaker crowd() {
   SceneMaker s;
