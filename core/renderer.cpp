@@ -78,8 +78,9 @@ struct Renderer::Impl {
   void prepare();
   bool use_raster();
   bool limited() const;
+  bool whole_picture() const;
   void render_sample(int sample);
-  void render_tiles(FrameInputs inputs, int sample);
+  void render_tiles(const FrameInputs& picture, int sample);
   void render_region(const FrameInputs& inputs, int sample, Workspace& work);
   void rasterize(const FrameInputs& inputs, Workspace& work);
   void select(const FrameInputs& inputs, int sample, Workspace& work);
@@ -169,14 +170,16 @@ void Renderer::Impl::render(const Progress& report_to) {
   finish();
 }
 
-/// The graph needs to see the whole picture, and so does the rasteriser. Else every thread takes
-/// tiles through all stages, so that their data stays in its cache.
 void Renderer::Impl::render_sample(int sample) {
   const Settings& settings = scene->settings;
   const FrameInputs inputs{*scene, width, height,
                            subpixel_offset(settings, settings.first_sample + sample),
                            settings.budget_ms / static_cast<float>(settings.samples)};
-  if (limited() || raster) {
+  if (sample == 0 && !limited()) {
+    // Nothing has to be seen for it: as if every object were visible.
+    selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
+  }
+  if (whole_picture()) {
     Workspace& work = workspaces.local();
     render_region(inputs, sample, work);
     stats.stages += std::exchange(work.times, {});
@@ -185,11 +188,7 @@ void Renderer::Impl::render_sample(int sample) {
   }
 }
 
-void Renderer::Impl::render_tiles(FrameInputs picture, int sample) {
-  if (sample == 0) {
-    // Nothing is seen yet: as if every object were visible.
-    selection = heuristic.select(picture, Areas(scene->objects.size() + 1, 1));
-  }
+void Renderer::Impl::render_tiles(const FrameInputs& picture, int sample) {
   double wall_ms = 0.0;
   {
     const Stopwatch watch(wall_ms);
@@ -220,6 +219,12 @@ void Renderer::Impl::render_region(const FrameInputs& inputs, int sample, Worksp
 /// Whether the graph decides; else every visible object is traced, or none.
 bool Renderer::Impl::limited() const {
   return scene->settings.selection == SelectionPolicy::graph && scene->settings.budget_ms > 0.0f;
+}
+
+/// The graph needs to see the whole picture, and so does the rasteriser. Else every thread takes
+/// tiles through all stages, so that their data stays in its cache.
+bool Renderer::Impl::whole_picture() const {
+  return limited() || raster;
 }
 
 /// Brings what the stages read up to date with the scene.
@@ -258,7 +263,7 @@ void Renderer::Impl::rasterize(const FrameInputs& inputs, Workspace& work) {
   }
 }
 
-/// Decides who is traced, where that takes a look at the whole picture.
+/// Decides who is traced, where there is a budget to keep.
 void Renderer::Impl::select(const FrameInputs& inputs, int sample, Workspace& work) {
   if (sample > 0) return;
   const Stopwatch watch(work.times.heuristic);
@@ -269,8 +274,6 @@ void Renderer::Impl::select(const FrameInputs& inputs, int sample, Workspace& wo
       probe(inputs, work);
       selection = heuristic.select(inputs, work.areas);
     }
-  } else if (raster) {
-    selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
   }
   write_heuristic_mask(inputs, selection, work.gbuffer);
   if (scene->settings.validate_areas && raster) {
@@ -296,7 +299,7 @@ void Renderer::Impl::trace(const FrameInputs& inputs, Workspace& work) {
   const Stopwatch watch(work.times.trace);
   const auto cancelled = [this] { return cancel_requested.load(); };
   TraceRequest request{inputs, work.gbuffer, selection, 1, cancelled, {}};
-  if (limited() || raster) request.progress = [this](float share) { report(share); };
+  if (whole_picture()) request.progress = [this](float share) { report(share); };
   trace_stage.run(request, work.effects, work.counts);
 }
 

@@ -13,14 +13,19 @@ namespace kestrel {
 /// cache of a processor core.
 inline constexpr int kTileSize = 32;
 
+/// Whether a region is one tile at most.
+inline bool is_tile(const Region& region) {
+  return region.width <= kTileSize && region.height <= kTileSize;
+}
+
 namespace region_loops {
 
 template <typename Work>
 void run(const Region& region, int count, const Work& work) {
-  if (region.width > kTileSize || region.height > kTileSize) {
-    tbb::parallel_for(0, count, work);
-  } else {
+  if (is_tile(region)) {
     for (int i = 0; i < count; ++i) work(i);
+  } else {
+    tbb::parallel_for(0, count, work);
   }
 }
 

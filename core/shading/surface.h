@@ -35,11 +35,13 @@ inline int material_of(const Scene& scene, const Object& object, uint32_t triang
   return object.materials[glm::min<size_t>(slot, object.materials.size() - 1)];
 }
 
+/// How many hits evaluate_surfaces() takes at once.
+inline constexpr size_t kMaxHits = 8;
+
 /// Interpolates and evaluates the materials of up to kMaxHits hits. Tangent space is listing 2's,
 /// with an orthogonal tangent. `normal_from_object`: the inverse transpose of every object's
 /// matrix. Several hits together take less time than one after the other: their geometry and
 /// texels come from memory side by side.
-inline constexpr size_t kMaxHits = 8;
 void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_object,
                        std::span<const SurfaceHit> hits, Surface* out);
 

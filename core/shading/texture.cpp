@@ -35,11 +35,20 @@ int wrap(int i, int n, Extension extension) {
   return kNone;
 }
 
-vec4 linear8(const Texture& t, const uint8_t* p) {
-  const float alpha = t.channels8 == 4 ? p[3] * kFromByte : 1.0f;
-  if (!t.srgb) return {p[0] * kFromByte, p[1] * kFromByte, p[2] * kFromByte, alpha};
+/// By 8-bit code: the sRGB curve or none.
+const float* decoding(const Texture& t) {
+  static const std::array<float, 256> straight = [] {
+    std::array<float, 256> table{};
+    for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(i) * kFromByte;
+    return table;
+  }();
   static const std::array<float, 256>& linear = srgb_to_linear();
-  return {linear[p[0]], linear[p[1]], linear[p[2]], alpha};
+  return t.srgb ? linear.data() : straight.data();
+}
+
+vec4 linear8(const Texture& t, const uint8_t* p) {
+  const float* value = decoding(t);
+  return {value[p[0]], value[p[1]], value[p[2]], t.channels8 == 4 ? p[3] * kFromByte : 1.0f};
 }
 
 vec4 texel(const Texture& t, int x, int y) {
@@ -86,17 +95,6 @@ struct Footprint {
   }
 };
 
-/// By 8-bit code: the sRGB curve or none.
-const float* decoding(const Texture& t) {
-  static const std::array<float, 256> straight = [] {
-    std::array<float, 256> table{};
-    for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(i) * kFromByte;
-    return table;
-  }();
-  static const std::array<float, 256>& linear = srgb_to_linear();
-  return t.srgb ? linear.data() : straight.data();
-}
-
 /// Most lookups: four 8-bit texels.
 vec4 bilinear8(const Texture& t, const Footprint& at) {
   const float* value = decoding(t);
@@ -140,11 +138,10 @@ vec4 sample_texture(const Texture& t, const vec2& uv) {
 
 void prefetch_texels(const Texture& t, const vec2& uv) {
   if (t.width <= 0 || t.height <= 0 || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return;
-  const int x = floor_to_int(texel_coordinate(uv.x, t.width, t.extension) - 0.5f);
-  const int y = floor_to_int(texel_coordinate(uv.y, t.height, t.extension) - 0.5f);
-  const int column = glm::clamp(x, 0, t.width - 1);
-  for (int row = glm::max(y, 0); row <= glm::min(y + 1, t.height - 1); ++row) {
-    const size_t i = static_cast<size_t>(row) * static_cast<size_t>(t.width) + column;
+  const Footprint at(t, uv, t.extension, t.extension);
+  for (const int row : {at.y0, at.y1}) {
+    if (at.x0 < 0 || row < 0) continue;
+    const size_t i = static_cast<size_t>(row) * static_cast<size_t>(t.width) + at.x0;
     if (t.texels_float.empty()) {
       __builtin_prefetch(&t.texels8[static_cast<size_t>(t.channels8) * i]);
     } else {

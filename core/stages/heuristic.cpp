@@ -146,8 +146,8 @@ void count_areas(const FrameInputs& inputs, const GBuffer& gbuffer, Areas& areas
       counts[id] += i - first;
     }
   };
-  if (inputs.region.width <= kTileSize && inputs.region.height <= kTileSize) {
-    for (int y = 0; y < inputs.region.height; ++y) count_row(y, areas);
+  if (is_tile(inputs.region)) {
+    for_rows(inputs.region, [&](int y) { count_row(y, areas); });
     return;
   }
   tbb::enumerable_thread_specific<Areas> partial([id_count] { return Areas(id_count, 0); });

@@ -29,8 +29,9 @@ void reset(EffectBuffers& effects, const Region& region) {
 
 void TraceStage::run(const TraceRequest& request, EffectBuffers& effects, TraceCounts& counts) {
   reset(effects, request.inputs.region);
-  bool anything = false;
-  for (const UnitSelection& unit : request.selection.units) anything |= unit.effects != 0;
+  const auto& units = request.selection.units;
+  const bool anything =
+      std::any_of(units.begin(), units.end(), [](const auto& unit) { return unit.effects != 0; });
   if (anything) tracer_.trace(request, effects, counts);
   if (request.cancelled && request.cancelled()) {
     fail(ErrorCode::cancelled, "The render was cancelled.");
