@@ -7,9 +7,7 @@ own, whose view_update() and view_draw() Blender calls on its main thread.
 """
 
 import contextlib
-import sys
 import threading
-import traceback
 import weakref
 
 import bpy
@@ -58,10 +56,11 @@ class Redraw:
         self._engine = weakref.ref(engine)
 
     def __call__(self):
-        try:
-            self._engine().tag_redraw()
-        except (AttributeError, ReferenceError):  # the view is gone
-            pass
+        engine = self._engine()
+        if engine is None:
+            return
+        with contextlib.suppress(ReferenceError):  # Blender has just freed the view
+            engine.tag_redraw()
 
 
 class KestrelRenderEngine(bpy.types.RenderEngine):
@@ -139,9 +138,7 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
             except capi.KestrelError as error:
                 self._error = str(error)
             except Exception as error:
-                traceback.print_exc(file=sys.stdout)
-                self._error = (f"Kestrel made a mistake ({type(error).__name__}: {error}). Please "
-                               "report it with the lines above this one in the terminal.")
+                self._error = log.mistake(error)
         for text in messages:
             self.report({"WARNING"}, text)
 
@@ -184,9 +181,7 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
             except capi.KestrelError as error:
                 self._fail(str(error))
             except Exception as error:
-                traceback.print_exc(file=sys.stdout)
-                self._fail(f"Kestrel made a mistake ({type(error).__name__}: {error}). Please "
-                           "report it with the lines above this one in the terminal.")
+                self._fail(log.mistake(error))
         for text in messages:
             self.report({"WARNING"}, text)
 

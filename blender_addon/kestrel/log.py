@@ -5,6 +5,7 @@ import contextlib
 import os
 import sys
 import threading
+import traceback
 
 from .native import capi, loader
 
@@ -49,6 +50,14 @@ def _from_library(_user, level, text):
         warning(words)
     else:
         _write(LEVELS[min(max(level, 0), 3)], words)
+
+
+def mistake(error):
+    """What to tell the artist of an exception that is nobody's but Kestrel's fault; its traceback
+    goes to the terminal."""
+    traceback.print_exception(error, file=sys.stdout)
+    return (f"Kestrel made a mistake ({type(error).__name__}: {error}). Please report it with the "
+            "lines above this one in the terminal.")
 
 
 def register():

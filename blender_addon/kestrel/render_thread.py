@@ -5,14 +5,13 @@ While something changes: one sample a frame, within the budget, at a coarser res
 is needed. Once still: every pixel, everything ray traced, samples added up until there are enough.
 """
 
-import sys
 import threading
 import time
-import traceback
 from dataclasses import dataclass
 
 import numpy as np
 
+from . import log
 from .native import capi
 from .pixel_size import PixelSize
 
@@ -108,9 +107,7 @@ class RenderThread(threading.Thread):
             except capi.KestrelError as error:
                 self._tell("", str(error))
             except Exception as error:
-                traceback.print_exc(file=sys.stdout)
-                self._tell("", f"Kestrel made a mistake ({type(error).__name__}: {error}). Please "
-                               "report it with the lines above this one in the terminal.")
+                self._tell("", log.mistake(error))
 
     def _changed_within(self, seconds):
         """Wait for a change, None: for ever; whether there is one. False when stopping."""

@@ -29,7 +29,6 @@ class Viewport:
     def __init__(self, redraw):
         """`redraw()` asks Blender to draw again, from any thread. Raises KestrelError."""
         self._key = f"viewport/{next(_numbers)}"
-        self._redraw = redraw
         self._session = session.acquire(self._key)
         self._thread = RenderThread(self._session, redraw)
         self._painter = draw.Painter()
