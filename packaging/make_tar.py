@@ -8,7 +8,6 @@ The command and the plug-in use the system's assimp and OpenImageIO. The same in
 bytes. Prints the tar's path.
 """
 
-import argparse
 import subprocess
 import sys
 import tarfile
@@ -16,10 +15,8 @@ import tempfile
 from pathlib import Path
 
 import bundle
-import elf
 import licences
 import make_zip
-from make_zip import REPOSITORY
 
 DATE_S = 1577836800  # of every entry: 2020-01-01
 COMMAND_PACKAGES = ("libcli11-dev",)  # compiled into the command
@@ -51,21 +48,18 @@ def write_tar(target, folder, top):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
-    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist")
-    args = parser.parse_args()
-    args.dist.mkdir(parents=True, exist_ok=True)
-    name = f"kestrel-{make_zip.project_version()}-linux-{make_zip.machine()}"
+    args = make_zip.parse_arguments(__doc__)
+    name = make_zip.package_name()
+    target = args.dist / f"{name}.tar"
     try:
         with tempfile.TemporaryDirectory() as folder:
             stage(args.build, Path(folder))
-            write_tar(args.dist / f"{name}.tar", Path(folder), name)
-    except (bundle.BundleError, elf.ElfError, licences.LicenceError) as error:
+            write_tar(target, Path(folder), name)
+    except make_zip.FAULTS as error:
         sys.exit(f"make_tar: {error}")
     except subprocess.CalledProcessError:
         sys.exit(f"make_tar: 'cmake --install' failed for {args.build}; run './dev build' first")
-    print(args.dist / f"{name}.tar")
+    print(target)
 
 
 if __name__ == "__main__":

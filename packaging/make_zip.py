@@ -22,6 +22,7 @@ import licences
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 ADDON = REPOSITORY / "blender_addon" / "kestrel"
+FAULTS = (bundle.BundleError, elf.ElfError, licences.LicenceError)  # what keeps a package from being made
 DATE = (2020, 1, 1, 0, 0, 0)  # of every entry
 
 
@@ -32,6 +33,20 @@ def project_version():
 
 def machine():
     return {"x86_64": "x64", "aarch64": "arm64"}.get(platform.machine(), platform.machine())
+
+
+def package_name():
+    return f"kestrel-{project_version()}-linux-{machine()}"
+
+
+def parse_arguments(description):
+    """--build and --dist, as both packages take them; the folder of --dist is made."""
+    parser = argparse.ArgumentParser(description=description.split("\n")[0])
+    parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
+    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist")
+    args = parser.parse_args()
+    args.dist.mkdir(parents=True, exist_ok=True)
+    return args
 
 
 def addon_files():
@@ -67,17 +82,13 @@ def write_zip(target, build):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--build", type=Path, default=REPOSITORY / "build")
-    parser.add_argument("--dist", type=Path, default=REPOSITORY / "dist")
-    args = parser.parse_args()
+    args = parse_arguments(__doc__)
     if not (args.build / "libkestrel.so").is_file():
         sys.exit(f"make_zip: there is no libkestrel.so in {args.build}. Run './dev build' first.")
-    args.dist.mkdir(parents=True, exist_ok=True)
-    target = args.dist / f"kestrel-{project_version()}-linux-{machine()}.zip"
+    target = args.dist / f"{package_name()}.zip"
     try:
         write_zip(target, args.build)
-    except (bundle.BundleError, elf.ElfError, licences.LicenceError) as error:
+    except FAULTS as error:
         sys.exit(f"make_zip: {error}")
     print(target)
 
