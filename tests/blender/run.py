@@ -9,7 +9,6 @@ The Blender is that of KESTREL_BLENDER, or `blender`; its user folder is BUILD/b
 Blender the tests are skipped (exit status 77). KESTREL_LIBRARY may name another library to test.
 """
 
-import argparse
 import os
 import shutil
 import subprocess
@@ -18,29 +17,15 @@ import unittest
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-REPOSITORY = HERE.parents[1]
-SKIPPED = 77
+sys.path.insert(0, str(HERE))
 
-
-def names():
-    return sorted(path.stem.removeprefix("test_") for path in HERE.glob("test_*.py"))
+from blender_run import REPOSITORY, SKIPPED, names, parser, user_folders  # noqa: E402
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(prog="run.py", description=__doc__.split("\n")[0])
-    parser.add_argument("names", nargs="*", metavar="NAME", choices=names() + [[]])
-    parser.add_argument("--list", action="store_true", help="print the names, one a line")
-    parser.add_argument("--prepare", action="store_true", help="package and install the add-on")
-    parser.add_argument("--build", type=Path, default=REPOSITORY / "build",
-                        help="folder with libkestrel.so")
-    return parser.parse_args(arguments)
-
-
-def user_folders(build):
-    """Environment that gives Blender a user folder of its own."""
-    user = build.resolve() / "blender_user"
-    return {f"BLENDER_USER_{name.upper()}": str(user / name)
-            for name in ("config", "scripts", "extensions")}
+    options = parser(HERE, __doc__)
+    options.add_argument("--prepare", action="store_true", help="package and install the add-on")
+    return options.parse_args(arguments)
 
 
 def prepare(args, blender):
@@ -76,12 +61,12 @@ def run_inside(args):
     """Run the tests in this Blender; returns whether all passed."""
     import addon_utils
     sys.dont_write_bytecode = True
-    sys.path[:0] = [str(HERE), str(REPOSITORY / "tests/parity")]
+    sys.path.insert(0, str(REPOSITORY / "tests/parity"))
     if addon_utils.enable("kestrel", default_set=True) is None:
         print("the add-on did not start; the reason stands above")
         return False
     suite = unittest.defaultTestLoader.loadTestsFromNames(
-        [f"test_{name}" for name in args.names or names()])
+        [f"test_{name}" for name in args.names or names(HERE)])
     return unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(suite).wasSuccessful()
 
 
@@ -91,7 +76,7 @@ def main():
         sys.exit(0 if run_inside(parse(own)) else 1)
     args = parse(sys.argv[1:])
     if args.list:
-        print("\n".join(names()))
+        print("\n".join(names(HERE)))
         return
     sys.exit(run_outside(args))
 

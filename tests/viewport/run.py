@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the viewport's tests in a Blender with a window, on a virtual screen, with the add-on of
-this checkout.
+"""Runs the viewport's tests in a Blender with a window, on a virtual screen, with the add-on
+that tests/blender/run.py --prepare installed from its zip.
 
     python3 tests/viewport/run.py [--build build] [NAME ...]     NAME: motion for test_motion.py
     python3 tests/viewport/run.py --list
@@ -9,7 +9,6 @@ Library and Blender are chosen as in tests/blender/run.py. Without a Blender, or
 the tests are skipped (exit status 77).
 """
 
-import argparse
 import os
 import shutil
 import subprocess
@@ -19,23 +18,12 @@ import unittest
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-REPOSITORY = HERE.parents[1]
-SKIPPED = 77
+sys.path[:0] = [str(HERE), str(HERE.parent / "blender")]
+
+from blender_run import REPOSITORY, SKIPPED, names, parser, user_folders  # noqa: E402
+
 SIZE = "960", "540"  # of the window, pixels
 TIME_LIMIT_S = 540.0
-
-
-def names():
-    return sorted(path.stem.removeprefix("test_") for path in HERE.glob("test_*.py"))
-
-
-def parse(arguments):
-    parser = argparse.ArgumentParser(prog="run.py", description=__doc__.split("\n")[0])
-    parser.add_argument("names", nargs="*", metavar="NAME", choices=names() + [[]])
-    parser.add_argument("--list", action="store_true", help="print the names, one a line")
-    parser.add_argument("--build", type=Path, default=REPOSITORY / "build",
-                        help="folder with libkestrel.so")
-    return parser.parse_args(arguments)
 
 
 # ---- outside of Blender ------------------------------------------------------------------------
@@ -50,9 +38,9 @@ def run_outside(args):
         return SKIPPED
     with tempfile.TemporaryDirectory() as folder:
         verdict = Path(folder) / "verdict"
-        environment = dict(os.environ, LIBGL_ALWAYS_SOFTWARE="1", TMPDIR=folder,
-                           KESTREL_TEST_BLENDER=blender, KESTREL_TEST_VERDICT=str(verdict))
-        environment.setdefault("KESTREL_LIBRARY", str(args.build.resolve() / "libkestrel.so"))
+        environment = {**os.environ, **user_folders(args.build), "LIBGL_ALWAYS_SOFTWARE": "1",
+                       "TMPDIR": folder, "KESTREL_TEST_BLENDER": blender,
+                       "KESTREL_TEST_VERDICT": str(verdict)}
         try:
             subprocess.run(
                 [screen, "-a", "-s", "-screen 0 {}x{}x24".format(*SIZE), blender, "-noaudio",
@@ -74,15 +62,14 @@ def start_inside(args):
     import addon_utils
     import bpy
     sys.dont_write_bytecode = True
-    sys.path[:0] = [str(HERE), str(REPOSITORY / "tests/blender"),
-                    str(REPOSITORY / "blender_addon"), str(REPOSITORY / "tests/parity")]
+    sys.path.insert(0, str(REPOSITORY / "tests/parity"))
     bpy.context.preferences.view.show_splash = False
     if addon_utils.enable("kestrel", default_set=True) is None:
         print("the add-on did not start; the reason stands above")
         os._exit(1)
     import stepper
     suite = unittest.defaultTestLoader.loadTestsFromNames(
-        [f"test_{name}" for name in args.names or names()])
+        [f"test_{name}" for name in args.names or names(HERE)])
 
     def end(passed):
         Path(os.environ["KESTREL_TEST_VERDICT"]).write_text("passed" if passed else "failed",
@@ -94,11 +81,12 @@ def start_inside(args):
 
 def main():
     if "bpy" in sys.modules:
-        start_inside(parse(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []))
+        own = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+        start_inside(parser(HERE, __doc__).parse_args(own))
         return
-    args = parse(sys.argv[1:])
+    args = parser(HERE, __doc__).parse_args(sys.argv[1:])
     if args.list:
-        print("\n".join(names()))
+        print("\n".join(names(HERE)))
         return
     sys.exit(run_outside(args))
 
