@@ -3,8 +3,8 @@
 
 import bpy
 
-from . import ui
 from .native import loader
+from .ui import common
 
 
 class KestrelPreferences(bpy.types.AddonPreferences):
@@ -13,7 +13,7 @@ class KestrelPreferences(bpy.types.AddonPreferences):
     def draw(self, _context):
         library = loader.library()
         if library is None:
-            ui.draw_library_error(self.layout)
+            common.draw_library_error(self.layout)
             return
         column = self.layout.column()
         column.label(text=f"Kestrel {library.version()}", icon="CHECKMARK")

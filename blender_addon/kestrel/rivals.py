@@ -7,7 +7,7 @@ Blender starts later registers nothing but a page in the preferences, and says w
 
 import bpy
 
-from . import ui
+from .ui import common
 
 _page = None
 _text = ""
@@ -17,7 +17,7 @@ def active():
     """The module of another Kestrel whose engine is registered; empty when there is none."""
     for kind in bpy.types.RenderEngine.__subclasses__():
         owner = kind.__module__.rpartition(".")[0]
-        if getattr(kind, "bl_idname", "") == ui.ENGINE and kind.is_registered \
+        if getattr(kind, "bl_idname", "") == common.ENGINE and kind.is_registered \
                 and owner != __package__:
             return owner
     return ""
@@ -29,7 +29,7 @@ def message(other):
 
 
 def _draw_page(self, _context):
-    ui.draw_text(self.layout, _text)
+    common.draw_text(self.layout, _text)
 
 
 def _pop_up():

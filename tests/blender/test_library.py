@@ -96,9 +96,9 @@ class LibraryTest(unittest.TestCase):
 class MissingLibraryTest(unittest.TestCase):
     """The add-on stays enabled and says what is wrong."""
 
-    SCRIPT = ("import bpy, kestrel; from kestrel import ui; from kestrel.native import loader; "
+    SCRIPT = ("import bpy, kestrel; from kestrel.ui import render; from kestrel.native import loader; "
               "s = bpy.context.scene; s.render.engine = 'KESTREL'; "
-              "print('PANEL', ui.KESTREL_RENDER_PT_library.shown(None)); "
+              "print('PANEL', render.KESTREL_RENDER_PT_library.shown(None)); "
               "print('REASON', loader.error()); bpy.ops.render.render()")
 
     def output(self, library):

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels: Kestrel's own, a file for each tab of the Properties editor, and those of Blender's that
+make sense with it."""
+
+import bpy
+
+from . import light, material, object, render, view_layer, world
+from .common import ENGINE
+
+TABS = (render, object, view_layer, material, light, world)
+CLASSES = tuple(cls for tab in TABS for cls in tab.CLASSES)
+
+# Panels for every engine without one of its own that show what Kestrel has not.
+NOT_FOR_KESTREL = {
+    "DATA_PT_area", "DATA_PT_falloff_curve", "DATA_PT_light", "DATA_PT_preview", "DATA_PT_spot",
+    "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "RENDER_PT_stereoscopy",
+    "WORLD_PT_context_world",
+}
+NOT_FOR_KESTREL_PREFIXES = ("MATERIAL_PT_freestyle", "RENDER_PT_freestyle", "RENDER_PT_gpencil",
+                            "RENDER_PT_grease_pencil", "VIEWLAYER_PT_freestyle")
+
+
+def shared_panels():
+    """Blender's panels that every engine without special needs shows."""
+    for panel in bpy.types.Panel.__subclasses__():
+        engines = getattr(panel, "COMPAT_ENGINES", ())
+        name = panel.__name__
+        if ("BLENDER_RENDER" in engines and name not in NOT_FOR_KESTREL
+                and not name.startswith(NOT_FOR_KESTREL_PREFIXES)):
+            yield panel
+
+
+_shared = []
+
+
+def register():
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    _shared.extend(shared_panels())
+    for panel in _shared:
+        panel.COMPAT_ENGINES.add(ENGINE)
+
+
+def unregister():
+    while _shared:
+        _shared.pop().COMPAT_ENGINES.discard(ENGINE)
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
