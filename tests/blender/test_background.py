@@ -49,14 +49,6 @@ class AnimationTest(SceneTest):
         self.check(2, 15.5)
         self.assertFalse((self.folder / "out_0001.exr").exists())
 
-    def test_file_opens_without_the_addon(self):
-        path = self.save()
-        done = run_blender(self.folder, "--python-expr",
-                           "import addon_utils; addon_utils.disable('kestrel'); import bpy; "
-                           f"bpy.ops.wm.open_mainfile(filepath={path!r}); "
-                           "print('OBJECTS', len(bpy.data.objects))")
-        self.assertIn("OBJECTS 2", done.stdout)
-
 
 class ErrorTest(SceneTest):
     def output_of_a_failing_render(self):

@@ -1,50 +1,132 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Enabling and disabling leave nothing behind; the settings are those of the parameter table."""
 
-import unittest
+import gc
+import threading
+from pathlib import Path
 
 import addon_utils
 import bpy
 from kestrel import properties, session
 from kestrel.native import loader
-from support import SceneTest
+from support import SceneTest, diffuse
+
+TIMES = 20
+MEMORY_GROWTH_MAX = 6 << 20  # bytes in the second half of the times, each with a render
+
+
+def registered_types():
+    """Names of everything that Blender knows as a class, those of Kestrel's panels among them."""
+    return set(dir(bpy.types))
+
+
+def subclasses():
+    """(base, name) of all Python classes that are alive and registered, with how many there are."""
+    gc.collect()
+    found = {}
+    for base in ("Panel", "Menu", "Header", "Operator", "PropertyGroup", "AddonPreferences",
+                 "RenderEngine", "UIList"):
+        for cls in getattr(bpy.types, base).__subclasses__():
+            if getattr(cls, "is_registered", True):
+                key = (base, cls.__name__)
+                found[key] = found.get(key, 0) + 1
+    return found
+
+
+def properties_of_types():
+    """type: names of its properties, of those that own some of Kestrel's in the end or might."""
+    return {kind: set(getattr(bpy.types, kind).bl_rna.properties.keys())
+            for kind in ("Scene", "Object", "ViewLayer", "Material", "World", "Light", "Camera",
+                         "Mesh", "Curve", "Collection", "Image", "RenderSettings", "NodeTree",
+                         "WindowManager", "Preferences")}
+
+
+def engines_of_panels():
+    return {cls.__name__: frozenset(cls.COMPAT_ENGINES)
+            for cls in bpy.types.Panel.__subclasses__() if hasattr(cls, "COMPAT_ENGINES")
+            and getattr(cls, "is_registered", True)}
+
+
+def menu_entries():
+    """name of a menu, header or panel: the functions that add to it."""
+    found = {}
+    for name in dir(bpy.types):
+        draw = getattr(getattr(bpy.types, name), "draw", None)
+        functions = getattr(draw, "_draw_funcs", None)
+        if functions is not None:
+            found[name] = [f"{f.__module__}.{f.__qualname__}" for f in functions]
+    return {name: functions for name, functions in found.items() if len(functions) > 1}
+
+
+def handlers():
+    return {name: [f"{f.__module__}.{f.__name__}" for f in getattr(bpy.app.handlers, name)]
+            for name in dir(bpy.app.handlers)
+            if isinstance(getattr(bpy.app.handlers, name), list)}
 
 
 def state():
     """Everything that registering changes."""
-    return {
-        "engines": sorted(c.__name__ for c in bpy.types.RenderEngine.__subclasses__()
-                          if c.is_registered),
-        "panels": sorted(name for name in dir(bpy.types) if "KESTREL" in name.upper()),
-        "shared": sorted(p.__name__ for p in bpy.types.Panel.__subclasses__()
-                         if "KESTREL" in getattr(p, "COMPAT_ENGINES", ())
-                         and not p.__name__.startswith("KESTREL")),
-        "handlers": {name: len(getattr(bpy.app.handlers, name)) for name in dir(bpy.app.handlers)
-                     if isinstance(getattr(bpy.app.handlers, name), list)},
-        "properties": sorted(t.__name__ for t in (bpy.types.Scene, bpy.types.Object,
-                                                  bpy.types.ViewLayer, bpy.types.Material)
-                             if hasattr(t, "kestrel")),
-        "sessions": session.count(),
-    }
+    return {"types": registered_types(), "classes": subclasses(), "menus": menu_entries(),
+            "properties": properties_of_types(), "engines": engines_of_panels(),
+            "handlers": handlers(), "sessions": session.count(),
+            "threads": sorted(thread.name for thread in threading.enumerate()),
+            "operators": set(dir(bpy.ops.kestrel))}
 
 
-class EnableTest(unittest.TestCase):
-    def test_five_times(self):
+def difference(found, wanted):
+    """What two parts of a state do not share, as the whole would fill pages."""
+    if isinstance(wanted, dict):
+        return sorted((key, found.get(key), wanted.get(key)) for key in {**found, **wanted}
+                      if found.get(key) != wanted.get(key))
+    return sorted(found ^ wanted) if isinstance(wanted, set) else [] if found == wanted else [
+        (found, wanted)]
+
+
+def resident_bytes():
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * 4096
+
+
+class EnableTest(SceneTest):
+    def render_something(self):
+        self.camera()
+        self.light("SUN", 3.0)
+        self.plane(material=diffuse("White", (0.8, 0.8, 0.8)))
+        self.render()
+
+    def assert_state(self, wanted):
+        found = state()
+        for name, value in wanted.items():
+            self.assertEqual(difference(found[name], value), [], name)
+
+    def test_twenty_times(self):
         session.drop_all()
+        state()  # Blender makes some classes of its own when they are first looked at
         enabled = state()
-        self.assertEqual(len(enabled["properties"]), 4)
-        self.assertIn("RENDER_PT_format", enabled["shared"])
+        self.assertEqual(sum("kestrel" in names for names in enabled["properties"].values()), 4)
+        self.assertIn("KESTREL", enabled["engines"]["RENDER_PT_format"])
         self.addCleanup(addon_utils.enable, "kestrel")
         addon_utils.disable("kestrel")
         disabled = state()
-        self.assertEqual(disabled["properties"], [])
-        self.assertEqual(disabled["shared"], [])
-        self.assertEqual(disabled["panels"], [])
-        for _ in range(5):
+        self.assertEqual([name for name in disabled["types"] if "KESTREL" in name.upper()], [])
+        self.assertEqual([n for n, e in disabled["engines"].items() if "KESTREL" in e], [])
+        self.assertNotIn("kestrel", set().union(*disabled["properties"].values()))
+        self.assertNotIn("kestrel", repr(disabled["handlers"]) + repr(disabled["menus"]))
+        memory, threads = [], []
+        for _ in range(TIMES):
             addon_utils.enable("kestrel")
-            self.assertEqual(state(), enabled)
+            self.setUp()
+            self.render_something()
+            session.drop_all()
+            self.assert_state(enabled)
             addon_utils.disable("kestrel")
-            self.assertEqual(state(), disabled)
+            self.assert_state(disabled)
+            memory.append(resident_bytes())
+            threads.append(len(list(Path("/proc/self/task").iterdir())))
+        growth = memory[-1] - memory[TIMES // 2 - 1]
+        print(f"memory of {TIMES} times: {[m >> 20 for m in memory]} MB, threads {threads}")
+        self.assertLess(growth, MEMORY_GROWTH_MAX)
+        self.assertLessEqual(threads[-1], max(threads[:TIMES // 2]))
 
 
 class PropertiesTest(SceneTest):
