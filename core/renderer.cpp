@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "base/error.h"
@@ -75,6 +76,7 @@ struct Renderer::Impl {
   }
 
   void render(const Progress& progress);
+  void begin_film();
   void prepare();
   bool use_raster();
   bool limited() const;
@@ -107,6 +109,7 @@ struct Renderer::Impl {
   int height = 0;
   tbb::enumerable_thread_specific<Workspace> workspaces;
   Selection selection;
+  mutable std::mutex film_mutex;  // held while `film` or `finished` is replaced or copied
   Film film;
   FrameStats stats;
   const Progress* progress = nullptr;
@@ -130,6 +133,20 @@ const Film& Renderer::film() const {
 }
 const std::string& Renderer::stats_json() const {
   return impl_->stats_json;
+}
+
+void Renderer::copy_so_far(std::string_view pass, float* out, size_t float_count) const {
+  const std::lock_guard lock(impl_->film_mutex);
+  const Film& film = impl_->film.width() > 0 ? impl_->film : impl_->finished;
+  if (film.width() == 0) {
+    fail(ErrorCode::invalid_operation,
+         "There is no frame yet. Call kestrelRender() first, on another thread or before.");
+  }
+  if (float_count != film.float_count(pass)) {
+    fail(ErrorCode::invalid_argument, "Pass '{}' of {} x {} pixels has {} floats, not {}.", pass,
+         film.width(), film.height(), film.float_count(pass), float_count);
+  }
+  film.copy_so_far(pass, out);
 }
 
 void Renderer::render_frame(std::shared_ptr<const Scene> scene, int width, int height,
@@ -159,7 +176,7 @@ void Renderer::Impl::render(const Progress& report_to) {
   progress = &report_to;
   last_report = 0;
   for (Workspace& work : workspaces) work.reset();
-  film = Film(width, height, passes);
+  begin_film();
   {
     const Stopwatch watch(stats.frame_ms);
     prepare();
@@ -168,6 +185,12 @@ void Renderer::Impl::render(const Progress& report_to) {
     }
   }
   finish();
+}
+
+void Renderer::Impl::begin_film() {
+  Film empty(width, height, passes);
+  const std::lock_guard lock(film_mutex);
+  film = std::move(empty);
 }
 
 void Renderer::Impl::render_sample(int sample) {
@@ -340,8 +363,12 @@ void Renderer::Impl::finish() {
   heuristic.learn(inputs, stats.selection, counts, stats.stages.trace, stats.samples);
   stats.rays += counts.rays;
   stats.trace_calls_ms = counts.trace_calls_ms;
-  film.finish(stats.samples);
-  finished = std::move(film);
+  {
+    const std::lock_guard lock(film_mutex);
+    film.finish(stats.samples);
+    finished = std::move(film);
+    film = {};
+  }
   stats_json = to_json(stats, *scene);
   log::info(
       "{}x{}, {} samples, primary {}: {:.1f} ms (update {:.1f}, raster {:.1f}, heuristic "

@@ -41,7 +41,7 @@ class Renderer {
   ~Renderer();
 
   /// Renders one frame. Throws Error(cancelled) when `progress` returned false or cancel() was
-  /// called; the last whole frame then stays readable.
+  /// called; the last whole frame then stays readable, and copy_so_far() has the rest.
   void render_frame(std::shared_ptr<const Scene> scene, int width, int height,
                     const Progress& progress);
 
@@ -51,7 +51,12 @@ class Renderer {
   /// From any thread; only affects a frame under way.
   void cancel();
 
-  /// The last frame.
+  /// A pass of the frame under way as far as it is, or of the last one that ended or was cancelled:
+  /// Film::copy_so_far(). From any thread. Throws Error(invalid_argument) where `float_count` is
+  /// not the pass's, Error(invalid_operation) before the first frame.
+  void copy_so_far(std::string_view pass, float* out, size_t float_count) const;
+
+  /// The last whole frame.
   const Film& film() const;
   /// One entry of "frames" of the stats, as JSON; empty before the first frame.
   const std::string& stats_json() const;

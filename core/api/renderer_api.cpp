@@ -156,6 +156,15 @@ void kestrelCancel(KestrelRenderer renderer) {
   });
 }
 
+KestrelError kestrelReadPassSoFar(KestrelRenderer renderer, const char* name, float* pixels,
+                                  size_t float_count) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    const PassInfo& pass = find_pass(require(name, "name"));
+    state->renderer.copy_so_far(pass.name, require(pixels, "pixels"), float_count);
+  });
+}
+
 KestrelError kestrelGetFrameSize(KestrelRenderer renderer, int* width, int* height) {
   return guarded([&] {
     const auto state = renderers().get(renderer);

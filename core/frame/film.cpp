@@ -104,7 +104,7 @@ const std::vector<PassInfo>& pass_table() {
 }
 
 Film::Film(int width, int height, const std::vector<std::string>& wanted)
-    : width_(width), height_(height) {
+    : width_(width), height_(height), tiles_(std::make_unique<Tile[]>(tile_count(whole()))) {
   for (const std::string& name : wanted) {
     const size_t row = find_row(name);
     const size_t channels = std::strlen(pass_rows()[row].info.channels);
@@ -113,25 +113,63 @@ Film::Film(int width, int height, const std::vector<std::string>& wanted)
   }
 }
 
+Film::Tile& Film::tile_at(int x, int y) const {
+  const int columns = (width_ + kTileSize - 1) / kTileSize;
+  return tiles_[y / kTileSize * columns + x / kTileSize];
+}
+
 void Film::add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
                const EffectBuffers& effects, const Plane<vec4>& combined) {
+  for_tiles(inputs.region, [&](const Region& tile) {
+    add_tile(inputs, tile, sample, gbuffer, effects, combined);
+  });
+}
+
+void Film::add_tile(const FrameInputs& inputs, const Region& tile, int sample,
+                    const GBuffer& gbuffer, const EffectBuffers& effects,
+                    const Plane<vec4>& combined) {
   const Sources from{inputs.scene.camera, gbuffer, effects, combined};
   const Region& region = inputs.region;
-  const size_t width = static_cast<size_t>(region.width);
-  for_rows(region, [&](int row) {
-    const size_t first = static_cast<size_t>(region.y + row) * static_cast<size_t>(width_) +
-                         static_cast<size_t>(region.x);
+  Tile& state = tile_at(tile.x, tile.y);
+  const tbb::spin_mutex::scoped_lock lock(state.mutex);
+  for (int y = tile.y; y < tile.y + tile.height; ++y) {
+    const size_t first =
+        static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(tile.x);
+    const size_t first_in_region =
+        static_cast<size_t>(y - region.y) * static_cast<size_t>(region.width) +
+        static_cast<size_t>(tile.x - region.x);
     for (Channel& pass : passes_) {
       const PassRow& source = pass_rows()[pass.pass];
       if (sample > 0 && !source.averaged) continue;
       float* out = &pass.sums[first * pass.channels];
-      for (size_t x = 0; x < width; ++x, out += pass.channels) {
+      for (size_t x = 0; x < static_cast<size_t>(tile.width); ++x, out += pass.channels) {
         float value[4];
-        source.get(from, static_cast<size_t>(row) * width + x, value);
+        source.get(from, first_in_region + x, value);
         for (size_t c = 0; c < pass.channels; ++c) out[c] = sample ? out[c] + value[c] : value[c];
       }
     }
-  });
+  }
+  state.samples = sample + 1;
+}
+
+void Film::copy_so_far(std::string_view name, float* out) const {
+  const Channel& pass = find(name);
+  const bool averaged = pass_rows()[pass.pass].averaged;
+  for (int y0 = 0; y0 < height_; y0 += kTileSize) {
+    for (int x0 = 0; x0 < width_; x0 += kTileSize) {
+      Tile& tile = tile_at(x0, y0);
+      const tbb::spin_mutex::scoped_lock lock(tile.mutex);
+      if (tile.samples == 0) continue;
+      const float scale = averaged ? 1.0f / static_cast<float>(tile.samples) : 1.0f;
+      const size_t count = static_cast<size_t>(std::min(kTileSize, width_ - x0)) * pass.channels;
+      for (int y = y0; y < std::min(y0 + kTileSize, height_); ++y) {
+        const size_t first =
+            (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x0)) *
+            pass.channels;
+        for (size_t i = first; i < first + count; ++i) out[i] = pass.sums[i] * scale;
+      }
+    }
+  }
 }
 
 const Film::Channel& Film::find(std::string_view name) const {
@@ -154,6 +192,8 @@ size_t Film::float_count(std::string_view name) const {
 }
 
 void Film::finish(int samples) {
+  const int tiles = tile_count(whole());
+  for (int i = 0; i < tiles; ++i) tiles_[i].samples = 1;
   if (samples < 2) return;
   const float scale = 1.0f / static_cast<float>(samples);
   for (Channel& pass : passes_) {

@@ -2,6 +2,9 @@
 // The finished picture: Combined and every buffer between the stages, as passes.
 #pragma once
 
+#include <tbb/spin_mutex.h>
+
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,8 +36,13 @@ class Film {
   void add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
            const EffectBuffers& effects, const Plane<vec4>& combined);
 
-  /// Turns the sums of so many samples into averages.
+  /// Turns the sums of so many samples into averages. Nothing is added any more.
   void finish(int samples);
+
+  /// Copies a pass as far as it is, averaged over the samples of each pixel so far; where there is
+  /// none yet, `out` (float_count() floats) stays as it is. Also while others add: tile after tile,
+  /// each of which waits for that alone. Throws as data().
+  void copy_so_far(std::string_view name, float* out) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -53,11 +61,21 @@ class Film {
     size_t channels;
     Plane<float> sums;
   };
+  /// What is added to a tile at a time.
+  struct Tile {
+    tbb::spin_mutex mutex;
+    int samples = 0;
+  };
   const Channel& find(std::string_view name) const;
+  Region whole() const { return {0, 0, width_, height_}; }
+  Tile& tile_at(int x, int y) const;
+  void add_tile(const FrameInputs& inputs, const Region& tile, int sample, const GBuffer& gbuffer,
+                const EffectBuffers& effects, const Plane<vec4>& combined);
 
   int width_ = 0;
   int height_ = 0;
   std::vector<Channel> passes_;
+  std::unique_ptr<Tile[]> tiles_;  // as for_tiles() divides the picture
 };
 
 }  // namespace kestrel

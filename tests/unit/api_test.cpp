@@ -256,6 +256,7 @@ TEST_F(Api, NullHandlesAreErrors) {
   expect_invalid();
   float pixel[4];
   expect_invalid(kestrelReadPass(nullptr, "Combined", pixel, 4));
+  expect_invalid(kestrelReadPassSoFar(nullptr, "Combined", pixel, 4));
   EXPECT_EQ(kestrelGetPassPixels(nullptr, "Combined"), nullptr);
   expect_invalid();
   EXPECT_EQ(kestrelGetStats(nullptr), nullptr);
@@ -598,6 +599,32 @@ TEST_F(Api, ProgressIsReported) {
   Watch w;
   expect_ok(kestrelRender(renderer, 64, 64, watch, &w));
   EXPECT_GT(w.calls, 0);
+}
+
+TEST_F(Api, APictureCanBeReadWhileItIsMade) {
+  set_glowing_square();
+  std::vector<float> pixels(64 * 64 * 4, -1.0f);
+  const auto read = [&] {
+    return kestrelReadPassSoFar(renderer, "Combined", pixels.data(), pixels.size());
+  };
+  expect_failure(read(), KESTREL_ERROR_INVALID_OPERATION);
+  std::atomic<bool> done = false;
+  std::thread reader([&] {
+    while (!done) {
+      if (read() != KESTREL_ERROR_NONE) continue;
+      for (size_t i = 0; i < pixels.size(); i += 4) {
+        EXPECT_TRUE(pixels[i] == -1.0f || pixels[i] == 0.25f) << pixels[i];
+      }
+    }
+  });
+  for (int i = 0; i < 20; ++i) expect_ok(kestrelRender(renderer, 64, 64, nullptr, nullptr));
+  done = true;
+  reader.join();
+  expect_ok(read());
+  EXPECT_EQ(pixels[2], 2.0f);
+  expect_invalid(kestrelReadPassSoFar(renderer, "Combined", nullptr, pixels.size()));
+  expect_invalid(kestrelReadPassSoFar(renderer, "Combined", pixels.data(), 4));
+  expect_invalid(kestrelReadPassSoFar(renderer, "Nothing", pixels.data(), pixels.size()));
 }
 
 TEST_F(Api, CancellingKeepsTheLastFrame) {

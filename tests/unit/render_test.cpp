@@ -2,6 +2,7 @@
 // Whole frames of small scenes with known answers, found by rays: no OpenGL is needed.
 #include <gtest/gtest.h>
 
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -416,6 +417,71 @@ TEST(Render, CancelKeepsTheLastPicture) {
   EXPECT_EQ(renderer.film().pass("Combined"), before);
   renderer.render_frame(s.scene, 64, 64, {});  // and it goes on working
   EXPECT_NE(renderer.film().pass("Combined"), before);
+}
+
+/// What copy_so_far() gives in every progress report of a frame; -1 where it left a pixel alone.
+std::vector<std::vector<float>> pictures_so_far(Renderer& renderer, const SceneMaker& maker,
+                                                int size) {
+  std::vector<std::vector<float>> pictures;
+  std::mutex mutex;
+  renderer.render_frame(maker.scene, size, size, [&](float, std::string_view) {
+    std::vector<float> picture(static_cast<size_t>(4 * size * size), -1.0f);
+    renderer.copy_so_far("Combined", picture.data(), picture.size());
+    const std::lock_guard lock(mutex);
+    pictures.push_back(std::move(picture));
+    return true;
+  });
+  return pictures;
+}
+
+TEST(Render, TilesOfOneSampleShowAsTheyGetDone) {
+  Renderer renderer(std::make_shared<Device>());
+  SceneMaker s = crowd();
+  s.scene->settings.max_depth = 8;
+  const auto pictures = pictures_so_far(renderer, s, 700);
+  const std::vector<float> whole = renderer.film().pass("Combined");
+  ASSERT_FALSE(pictures.empty());
+  size_t early = 0;
+  for (const std::vector<float>& picture : pictures) {
+    for (size_t i = 0; i < whole.size(); ++i) {
+      if (picture[i] == -1.0f) continue;
+      ++early;
+      ASSERT_EQ(picture[i], whole[i]);
+    }
+  }
+  EXPECT_GT(early, 0u);
+  std::vector<float> last(whole.size(), -1.0f);
+  renderer.copy_so_far("Combined", last.data(), last.size());
+  EXPECT_EQ(last, whole);
+}
+
+TEST(Render, SamplesSoFarAreAveraged) {
+  Renderer renderer(std::make_shared<Device>());
+  SceneMaker s;
+  s.scene->world.color = vec3(0.25f, 0.5f, 2.0f);
+  s.scene->settings.samples = 64;
+  const auto pictures = pictures_so_far(renderer, s, 400);
+  ASSERT_GT(pictures.size(), 1u);
+  const float expected[4] = {0.25f, 0.5f, 2.0f, 1.0f};
+  for (size_t i = 0; i < pictures.back().size(); ++i) {
+    ASSERT_FLOAT_EQ(pictures.back()[i], expected[i % 4]);
+  }
+}
+
+TEST(Render, CancelledPictureStaysAsFarAsItCame) {
+  Renderer renderer(std::make_shared<Device>());
+  std::vector<float> picture(4 * 400 * 400, -1.0f);
+  EXPECT_THROW(renderer.copy_so_far("Combined", picture.data(), picture.size()), Error);
+  SceneMaker s;
+  s.scene->world.color = vec3(0.25f);
+  s.scene->settings.samples = 4096;
+  EXPECT_THROW(renderer.render_frame(s.scene, 400, 400,
+                                     [](float share, std::string_view) { return share < 0.002f; }),
+               Error);
+  renderer.copy_so_far("Combined", picture.data(), picture.size());
+  for (size_t i = 0; i < picture.size(); i += 4) ASSERT_FLOAT_EQ(picture[i], 0.25f);
+  EXPECT_THROW(renderer.copy_so_far("Combined", picture.data(), 4), Error);
+  EXPECT_THROW(renderer.copy_so_far("Nothing", picture.data(), picture.size()), Error);
 }
 
 TEST(Render, SizesThatCannotBeAreRefused) {

@@ -313,6 +313,14 @@ KESTREL_API KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* 
 KESTREL_API KestrelError kestrelRender(KestrelRenderer renderer, int width, int height,
                                        KestrelProgressCallback progress, void* user);
 
+/* Copies a pass of the frame under way as far as it is, of the last frame where none is, or of a
+ * cancelled one what it had: averages over the samples so far. Pixels that have none yet stay as
+ * they are in `pixels`, width * height * channels floats of the size given to kestrelRender(). From
+ * any thread, also in a progress callback; the frame's threads hardly wait for it. Passes that are
+ * not averaged (Depth, ids …) are there after the first sample. An error before the first frame. */
+KESTREL_API KestrelError kestrelReadPassSoFar(KestrelRenderer renderer, const char* name,
+                                              float* pixels, size_t float_count);
+
 /* Makes a running kestrelRender() return KESTREL_ERROR_CANCELLED soon. From any thread. */
 KESTREL_API void kestrelCancel(KestrelRenderer renderer);
 
