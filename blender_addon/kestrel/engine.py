@@ -13,7 +13,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import compat, log, passes, session, sync, viewport
+from . import compat, icons, log, passes, session, sync, viewport
 from .native import capi
 
 POLL_S = 0.05  # how often the status bar is written and Escape is looked for
@@ -66,7 +66,7 @@ class Redraw:
 class KestrelRenderEngine(bpy.types.RenderEngine):
     bl_idname = "KESTREL"
     bl_label = "Kestrel"
-    bl_use_preview = False
+    bl_use_preview = True
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
 
@@ -80,12 +80,14 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
 
     def update(self, data, depsgraph):
         self._session = None
-        self._key = session_key(depsgraph.scene, depsgraph.view_layer)
+        self._key = (icons.new_key(self) if self.is_preview else
+                     session_key(depsgraph.scene, depsgraph.view_layer))
         self.update_stats("", "Reading the scene")
         with self._reporting():
             target = session.acquire(self._key)
-            self._size = sync.export_depsgraph(
-                target, depsgraph, self._camera(depsgraph), log.warning)
+            camera = self._camera(depsgraph)
+            self._size = (icons.export(target, depsgraph, camera) if self.is_preview else
+                          sync.export_depsgraph(target, depsgraph, camera, log.warning))
             self._session = target
 
     def render(self, depsgraph):
@@ -97,6 +99,8 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
             self._render_frame()
             if not self.test_break():
                 self._write_result(depsgraph.view_layer)
+        if self.is_preview:
+            session.drop(self._key)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)
@@ -186,9 +190,12 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
             self.report({"WARNING"}, text)
 
     def _fail(self, text):
-        """Say it wherever the artist may look: status bar, image editor, terminal."""
+        """Say it wherever the artist may look: status bar, image editor, terminal. An icon stays
+        empty."""
         session.drop(self._key)
         self._session = None
+        if self.is_preview:
+            return
         log.error(text)
         self.report({"ERROR"}, text)
         self.error_set(text)

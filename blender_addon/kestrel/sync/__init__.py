@@ -12,17 +12,19 @@ from .world import sync_world
 VIEWPORT_SETTINGS = ("budget_ms", "samples", "first_sample")
 
 
-def export_depsgraph(session, depsgraph, camera, say):
+def export_depsgraph(session, depsgraph, camera, say, settings=None):
     """Send everything that this depsgraph shows through `camera`, an evaluated object or None.
 
-    Returns the (width, height) to render. `say(text)` takes warnings. Raises KestrelError; the
-    session is then unfit for use.
+    `settings`, as {name: text}, take the place of the scene's own. Returns the (width, height) to
+    render. `say(text)` takes warnings. Raises KestrelError; the session is then unfit for use.
     """
     scene = depsgraph.scene_eval
     export = Export(session, say, scene.kestrel.environment_ior)
     size = sync_camera(export, camera, scene.render)
     ambient = sync_world(export, scene.world)
     sync_settings(export, scene, ambient)
+    for name, value in (settings or {}).items():
+        export.scene.set_setting(name, value)
     sync_objects(export, depsgraph)
     export.finish()
     export.scene.commit()
