@@ -164,6 +164,26 @@ def write_passes(layer, pixels_of):
         layer.passes.foreach_set("rect", whole)
 
 
+class CombinedWriter:
+    """Writes a result layer's Combined pass again and again, and no other."""
+
+    def __init__(self, layer, pixel_count):
+        self._layer = layer
+        sizes = [pixel_count * item.channels for item in layer.passes]
+        index = next(i for i, item in enumerate(layer.passes) if item.name == "Combined")
+        first = sum(sizes[:index])
+        # All passes of the layer, in its order: what can be written in every version.
+        self._whole = np.zeros(sum(sizes), FLOAT)
+        self._index = index
+        self.pixels = self._whole[first:first + sizes[index]].reshape(-1, 4)  # to be filled
+
+    def write(self):
+        try:
+            self._layer.passes[self._index].rect.foreach_set(self.pixels.reshape(-1))  # 4.1 on
+        except (AttributeError, TypeError, RuntimeError):
+            self._layer.passes.foreach_set("rect", self._whole)
+
+
 # ---- materials, lights -----------------------------------------------------------------------
 
 def node_input(node, *names):

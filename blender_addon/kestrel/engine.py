@@ -1,51 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The render engine: F12, background rendering, and 3D views in Rendered shading.
+"""The render engine: F12 and background rendering, and 3D views in Rendered shading.
 
-For F12 Blender calls update() with its data locked and then render(), once for each view layer.
-Everything that is read from Blender is read in update(). Each 3D view has an engine object of its
-own, whose view_update() and view_draw() Blender calls on its main thread.
+Blender makes an engine object for each render and for each 3D view. It calls update() and render()
+on a thread of its own, view_update() and view_draw() on its main thread.
 """
 
 import contextlib
-import threading
 import weakref
 
 import bpy
 from bpy.app.handlers import persistent
 
-from . import compat, icons, log, passes, session, sync, viewport
+from . import final_render, log, passes, session, viewport
 from .native import capi
-
-POLL_S = 0.05  # how often the status bar is written and Escape is looked for
-
-
-def session_key(scene, view_layer):
-    return f"{compat.datablock_key(scene)}/{view_layer.name}"
-
-
-class Frame(threading.Thread):
-    """A frame being rendered: the library works on this thread while Blender's one reports."""
-
-    def __init__(self, target, width, height):
-        super().__init__(name="Kestrel frame")
-        self.fraction, self.status = 0.0, ""
-        self.error = None
-        self.cancelled = False
-        self._session, self._size = target, (width, height)
-
-    def _progress(self, fraction, status):
-        self.fraction, self.status = fraction, status
-        return not self.cancelled
-
-    def run(self):
-        try:
-            self._session.render(*self._size, self._progress)
-        except Exception as error:  # raised again on Blender's thread
-            self.error = error
-
-    def cancel(self):
-        self.cancelled = True
-        self._session.renderer.cancel()
 
 
 class Redraw:
@@ -70,37 +37,19 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
 
-    _session = None
-    _key = None
-    _size = (0, 0)
-    _viewport = None
-    _error = ""  # why the 3D view cannot follow Blender's data
+    _final = None     # the final render
+    _viewport = None  # the 3D view
+    _error = ""       # why the 3D view cannot follow Blender's data
 
     # ---- what Blender calls ----
 
     def update(self, data, depsgraph):
-        self._session = None
-        self._key = (icons.new_key(self) if self.is_preview else
-                     session_key(depsgraph.scene, depsgraph.view_layer))
-        self.update_stats("", "Reading the scene")
-        with self._reporting():
-            target = session.acquire(self._key)
-            camera = self._camera(depsgraph)
-            self._size = (icons.export(target, depsgraph, camera) if self.is_preview else
-                          sync.export_depsgraph(target, depsgraph, camera, log.warning))
-            self._session = target
+        if self._final is None:
+            self._final = final_render.FinalRender()
+        self._final.update(self, depsgraph)
 
     def render(self, depsgraph):
-        if self._session is None:
-            return
-        with self._reporting():
-            self._session.renderer.set_passes(
-                item.name for item in passes.enabled(depsgraph.view_layer))
-            self._render_frame()
-            if not self.test_break():
-                self._write_result(depsgraph.view_layer)
-        if self.is_preview:
-            session.drop(self._key)
+        self._final.render(self, depsgraph)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)
@@ -145,60 +94,6 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
                 self._error = log.mistake(error)
         for text in messages:
             self.report({"WARNING"}, text)
-
-    # ---- F12 ----
-
-    def _camera(self, depsgraph):
-        camera = self.camera_override or depsgraph.scene_eval.camera
-        return camera.evaluated_get(depsgraph) if camera else None
-
-    def _render_frame(self):
-        frame = Frame(self._session, *self._size)
-        frame.start()
-        while frame.is_alive():
-            frame.join(POLL_S)
-            self.update_progress(frame.fraction)
-            self.update_stats("", frame.status)
-            if not frame.cancelled and self.test_break():
-                frame.cancel()
-        if frame.error is not None:
-            raise frame.error
-
-    def _write_result(self, view_layer):
-        passes.add(self, view_layer)
-        result = self.begin_result(0, 0, *self._size, layer=view_layer.name)
-        compat.write_passes(result.layers[0], passes.reader(self._session.renderer, *self._size))
-        self.end_result(result)
-
-    @contextlib.contextmanager
-    def _reporting(self):
-        """Tell the artist what goes wrong in this block, and start afresh the next time.
-
-        No exception may leave it: its traceback would keep objects of the depsgraph alive, which
-        Blender is about to free.
-        """
-        with log.collecting() as messages:
-            try:
-                yield
-            except capi.Cancelled:
-                pass
-            except capi.KestrelError as error:
-                self._fail(str(error))
-            except Exception as error:
-                self._fail(log.mistake(error))
-        for text in messages:
-            self.report({"WARNING"}, text)
-
-    def _fail(self, text):
-        """Say it wherever the artist may look: status bar, image editor, terminal. An icon stays
-        empty."""
-        session.drop(self._key)
-        self._session = None
-        if self.is_preview:
-            return
-        log.error(text)
-        self.report({"ERROR"}, text)
-        self.error_set(text)
 
 
 @persistent

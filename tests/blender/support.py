@@ -16,7 +16,7 @@ from pathlib import Path
 import bpy
 import exr
 import numpy as np
-from kestrel import engine, session
+from kestrel import final_render, session
 from mathutils import Matrix, Vector
 
 ADDON = Path(__file__).resolve().parents[2] / "blender_addon"
@@ -131,7 +131,7 @@ class SceneTest(unittest.TestCase):
 
     def stats(self):
         """Statistics of the last frame."""
-        key = engine.session_key(self.scene, self.scene.view_layers[0])
+        key = final_render.session_key(self.scene, self.scene.view_layers[0])
         return json.loads(session.acquire(key).renderer.stats())
 
     def assert_color(self, actual, expected, tolerance=1e-3):

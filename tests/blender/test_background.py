@@ -9,7 +9,7 @@ import unittest.mock
 
 import bpy
 import numpy as np
-from kestrel import engine, session, sync
+from kestrel import final_render, session, sync
 from kestrel.native import capi
 from mathutils import Matrix
 from support import SceneTest, emission, rgba, read_planes, run_blender
@@ -111,7 +111,7 @@ class CancelTest(SceneTest):
         self.addCleanup(session.drop, "cancel test")
         size = sync.export_depsgraph(target, depsgraph, self.scene.camera.evaluated_get(depsgraph),
                                      print)
-        frame = engine.Frame(target, *size)
+        frame = final_render.Frame(target, *size)
         frame.start()
         time.sleep(0.3)
         began = time.monotonic()
@@ -121,7 +121,7 @@ class CancelTest(SceneTest):
         self.assertIsInstance(frame.error, capi.Cancelled)
         target.scene.set_setting("samples", "1")
         target.scene.commit()
-        again = engine.Frame(target, *size)
+        again = final_render.Frame(target, *size)
         again.start()
         again.join()
         self.assertIsNone(again.error)
@@ -134,7 +134,7 @@ class CancelTest(SceneTest):
         target = session.acquire("drop test")
         size = sync.export_depsgraph(target, depsgraph, self.scene.camera.evaluated_get(depsgraph),
                                      print)
-        frame = engine.Frame(target, *size)
+        frame = final_render.Frame(target, *size)
         frame.start()
         time.sleep(0.1)
         session.drop("drop test")

@@ -187,6 +187,7 @@ FUNCTIONS = {
     "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
     "kestrelSetPasses": (c_int, [c_void_p, c_char_p]),
     "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
+    "kestrelReadPassSoFar": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelGetPassPixels": (float_p, [c_void_p, c_char_p]),
     "kestrelGetStats": (c_char_p, [c_void_p]),
     "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
@@ -436,6 +437,12 @@ class Renderer:
         if not pixels:
             raise self.library.last_error()
         return np.ctypeslib.as_array(pixels, (height * width, len(channels)))
+
+    def read_so_far(self, name, pixels):
+        """Copy a pass of the frame under way as far as it is into float32 `pixels`, those that are
+        not there yet left alone. From any thread."""
+        self.library.check(self.c.kestrelReadPassSoFar(
+            self.handle, encode(name), pointer(pixels, float_p, np.float32), pixels.size))
 
     def stats(self):
         """JSON text about the last frame, None before the first."""
