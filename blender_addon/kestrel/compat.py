@@ -43,9 +43,9 @@ def vertex_positions(mesh):
     return values.reshape(count, 3)
 
 
-def _stored_ints(collection, name):
-    """int32 (N,): a property of every item, read where Blender keeps the items in one block of
-    equal records; None where that cannot be made sure of.
+def _stored_ints(collection, name, width=1):
+    """int32 (N, width): a property of every item, read where Blender keeps the items in one block
+    of equal records; None where that cannot be made sure of.
 
     Asking for a value item by item takes 50 ns each, this 1. The field is the one whose values are
     those that Blender gives for a sample of the items.
@@ -55,7 +55,7 @@ def _stored_ints(collection, name):
         return None
     first, second = (collection[i].as_pointer() for i in range(2))
     stride = second - first
-    if not 4 <= stride <= 64 or stride % 4:
+    if not 4 * width <= stride <= 64 or stride % 4:
         return None
     places = np.linspace(0, count - 1, 32).astype(np.int64)
     sample = [collection[int(i)] for i in places]
@@ -63,18 +63,21 @@ def _stored_ints(collection, name):
         return None
     block = (ctypes.c_int32 * (count * stride // 4)).from_address(first)
     records = np.frombuffer(block, INT).reshape(count, stride // 4)
-    values = np.array([getattr(item, name) for item in sample], INT)
-    fields = np.flatnonzero((records[places] == values[:, None]).all(axis=0))
-    return records[:, fields[0]].copy() if len(fields) == 1 else None
+    values = np.array([getattr(item, name) for item in sample], INT).reshape(-1, width)
+    fields = [field for field in range(records.shape[1] - width + 1)
+              if (records[places, field:field + width] == values).all()]
+    if len(fields) != 1:
+        return None
+    return np.ascontiguousarray(records[:, fields[0]:fields[0] + width])
 
 
-def _ints(collection, name):
-    """int32 (N,): a property of every item."""
-    values = _stored_ints(collection, name)
+def _ints(collection, name, width=1):
+    """int32 (N * width,): a property of every item."""
+    values = _stored_ints(collection, name, width)
     if values is None:
-        values = np.empty(len(collection), INT)
+        values = np.empty(len(collection) * width, INT)
         collection.foreach_get(name, values)
-    return values
+    return values.reshape(-1)
 
 
 def corner_vertices(mesh):
@@ -139,13 +142,17 @@ def polygon_materials(mesh):
     return None if values is None else values.reshape(-1)
 
 
+def triangle_corners(mesh):
+    """int32 (3T,): the corners of each loop triangle."""
+    return _ints(mesh.loop_triangles, "loops", 3)
+
+
 def triangle_polygons(mesh):
     """int32 (T,): the polygon that each loop triangle comes from."""
+    if not hasattr(mesh, "loop_triangle_polygons"):  # until 3.5
+        return _ints(mesh.loop_triangles, "polygon_index")
     values = np.empty(len(mesh.loop_triangles), INT)
-    if hasattr(mesh, "loop_triangle_polygons"):  # 3.6 on
-        mesh.loop_triangle_polygons.foreach_get("value", values)
-    else:
-        mesh.loop_triangles.foreach_get("polygon_index", values)
+    mesh.loop_triangle_polygons.foreach_get("value", values)
     return values
 
 

@@ -7,6 +7,7 @@
 
 #include "api/errors.h"
 #include "api/handles.h"
+#include "base/hash.h"
 #include "base/log.h"
 #include "params/params.h"
 
@@ -85,6 +86,16 @@ const char* kestrelGetParameterTable(void) {
   return guarded_or("[]", [] {
     static const auto& table = *new std::string(parameter_table_json());
     return table.c_str();
+  });
+}
+
+KestrelError kestrelHash(const void* data, size_t byte_count, uint64_t hash[2]) {
+  return guarded([&] {
+    require(hash, "hash");
+    const auto* bytes = static_cast<const uint8_t*>(byte_count ? require(data, "data") : nullptr);
+    const Hash128 result = hash_bytes({bytes, byte_count}, {hash[0], hash[1]});
+    hash[0] = result.low;
+    hash[1] = result.high;
   });
 }
 

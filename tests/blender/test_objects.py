@@ -296,6 +296,11 @@ class AgainTest(SceneTest):
                              [loop.vertex_index for loop in mesh.loops])
             self.assertEqual(compat.corner_totals(mesh).tolist(),
                              [polygon.loop_total for polygon in mesh.polygons])
+            mesh.calc_loop_triangles()
+            self.assertEqual(compat.triangle_corners(mesh).reshape(-1, 3).tolist(),
+                             [list(triangle.loops) for triangle in mesh.loop_triangles])
+            self.assertEqual(compat.triangle_polygons(mesh).tolist(),
+                             [triangle.polygon_index for triangle in mesh.loop_triangles])
             if obj.name == "Flat":
                 self.assertIsNone(normals)
                 continue

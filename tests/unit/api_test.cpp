@@ -160,6 +160,21 @@ TEST_F(Api, DeviceInfoNamesVersions) {
   expect_invalid({"Device", "NULL"});
 }
 
+TEST_F(Api, FingerprintsOfBytes) {
+  uint64_t whole[2] = {0, 0}, parts[2] = {0, 0}, other[2] = {0, 0};
+  expect_ok(kestrelHash("kestrel", 7, whole));
+  expect_ok(kestrelHash("kestrel", 7, parts));
+  EXPECT_EQ(whole[0], parts[0]);
+  EXPECT_EQ(whole[1], parts[1]);
+  expect_ok(kestrelHash("kestrem", 7, other));
+  EXPECT_NE(whole[0], other[0]);
+  EXPECT_NE(whole[1], other[1]);
+  expect_ok(kestrelHash(nullptr, 0, parts));
+  EXPECT_NE(whole[0], parts[0]);
+  expect_invalid(kestrelHash(nullptr, 7, other), {"data", "NULL"});
+  expect_invalid(kestrelHash("kestrel", 7, nullptr), {"hash", "NULL"});
+}
+
 struct Messages {
   std::vector<std::string> texts;
   std::atomic<int> refused = 0;

@@ -148,6 +148,7 @@ FUNCTIONS = {
     "kestrelSetLogCallback": (None, [LogCallback, c_void_p]),
     "kestrelSetLogLevel": (None, [c_int]),
     "kestrelGetParameterTable": (c_char_p, []),
+    "kestrelHash": (c_int, [c_void_p, c_size_t, uint64_p]),
     "kestrelNewDevice": (c_void_p, []),
     "kestrelRetainDevice": (None, [c_void_p]),
     "kestrelReleaseDevice": (None, [c_void_p]),
@@ -277,6 +278,14 @@ class Library:
         if self._device is not None:
             self.c.kestrelReleaseDevice(self._device)
             self._device = None
+
+    def hash(self, *buffers):
+        """16 bytes: the library's fingerprint of contiguous buffers (arrays, bytes), in order."""
+        state = (c_uint64 * 2)()
+        for buffer in buffers:
+            data = np.frombuffer(buffer, np.uint8)
+            self.check(self.c.kestrelHash(data.ctypes.data, data.nbytes, state))
+        return bytes(state)
 
     def default_material(self):
         material = Material()

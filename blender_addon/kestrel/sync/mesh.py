@@ -12,15 +12,12 @@ GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 def triangulate(mesh):
-    """(corner, polygon) indices of every triangle: int32 (3T,) and (T,), or None and None where
-    each polygon is a triangle already."""
+    """int32 (3T,): the corners of every triangle, or None where each polygon is a triangle."""
     if 3 * len(mesh.polygons) == len(mesh.loops):
         if (compat.corner_totals(mesh) == 3).all():
-            return None, None
+            return None
     mesh.calc_loop_triangles()
-    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
-    return corners, compat.triangle_polygons(mesh)
+    return compat.triangle_corners(mesh)
 
 
 def render_uv_layer(mesh):
@@ -31,7 +28,7 @@ def render_uv_layer(mesh):
 def arrays(mesh, slot_count):
     """The arguments of capi.Scene.set_mesh after the name."""
     positions = compat.vertex_positions(mesh)
-    corners, polygons = triangulate(mesh)
+    corners = triangulate(mesh)
 
     def per_corner(values):
         if values is None:
@@ -43,7 +40,7 @@ def arrays(mesh, slot_count):
     uvs = per_corner(compat.corner_uvs(layer)) if layer else None
     slots = compat.polygon_materials(mesh) if slot_count > 1 else None
     if slots is not None:
-        slots = slots if polygons is None else slots[polygons]
+        slots = slots if corners is None else slots[compat.triangle_polygons(mesh)]
         slots = np.clip(slots, 0, slot_count - 1).astype(np.uint32)
     return positions, triangles, per_corner(compat.corner_normals(mesh)), uvs, slots
 

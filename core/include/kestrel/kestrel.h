@@ -75,6 +75,11 @@ KESTREL_API void kestrelSetLogLevel(KestrelLogLevel level);
  * items, unit, paper, help. Never NULL. */
 KESTREL_API const char* kestrelGetParameterTable(void);
 
+/* Fingerprint of bytes, to tell whether content has changed: the same bytes give the same 128 bits.
+ * `hash` (two numbers) holds what came before, {0, 0} at first, and receives the fingerprint of
+ * that with these bytes added. No protection against contents made to collide. */
+KESTREL_API KestrelError kestrelHash(const void* data, size_t byte_count, uint64_t hash[2]);
+
 /* ---- Device: the machine --------------------------------------------------------------------- */
 
 typedef struct KestrelDeviceImpl* KestrelDevice;
