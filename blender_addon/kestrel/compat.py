@@ -136,6 +136,24 @@ def corner_uvs(layer):
     return values.reshape(-1, 2)
 
 
+def curve_points(curves):
+    """float32 (N, 3): the points of all curves, one curve after the other, object space."""
+    values = np.empty(3 * len(curves.points), FLOAT)
+    curves.points.foreach_get("position", values)
+    return values.reshape(-1, 3)
+
+
+def curve_counts(curves):
+    """int32 (C,): how many points each curve has."""
+    return _ints(curves.curves, "points_length")
+
+
+def curve_radii(curves):
+    """float32 (N,): the radius at each point, metres; None where there is no such attribute."""
+    values = _attribute(curves, "radius", "value", 1, len(curves.points), FLOAT)
+    return None if values is None else values.reshape(-1)
+
+
 def polygon_materials(mesh):
     """int32 (P,): the material slot of each polygon; None where all use the first."""
     values = _attribute(mesh, "material_index", "value", 1, len(mesh.polygons), INT)

@@ -9,13 +9,14 @@ import struct
 
 from .. import compat
 from ..native import capi
+from .hair import sync_curves, sync_strands
 from .light import sync_light
 from .material import sync_material
 from .mesh import GEOMETRY, sync_mesh
 from .settings import as_text, rows
 
 # Drawn by other engines and not by Kestrel.
-UNSUPPORTED = {"CURVES": "hair curves", "POINTCLOUD": "point clouds", "VOLUME": "volumes",
+UNSUPPORTED = {"POINTCLOUD": "point clouds", "VOLUME": "volumes",
                "GPENCIL": "grease pencil strokes", "GREASEPENCIL": "grease pencil strokes"}
 
 
@@ -28,16 +29,17 @@ def columns(matrix):
 class Objects:
     """Sends the objects of one evaluation."""
 
-    def __init__(self, export, override, shown=None):
-        """`override`: the view layer's material for everything, or None. `shown(object)` says
-        whether an object, or what it places, is drawn; None: all are."""
+    def __init__(self, export, depsgraph, shown=None):
+        """`shown(object)` says whether an object, or what it places, is drawn; None: all are."""
         self.export = export
-        self.override = override
+        self.scene = depsgraph.scene_eval
+        self.for_viewport = depsgraph.mode == "VIEWPORT"
+        self.override = depsgraph.view_layer_eval.material_override
         self.shown = shown
         self.settings = rows("object")
         self.units = set()  # whose settings are set
         self.keys = {}      # original object: its key
-        self.shapes = {}    # (object key, address of its data): name, mesh, materials by slot
+        self.shapes = {}    # (object key, address of its data): what shape() says
 
     def key_of(self, original):
         key = self.keys.get(original)
@@ -50,43 +52,55 @@ class Objects:
         # an instance, Blender has freed its memory by now, and what follows allocates.
         matrix = instance.matrix_world.copy()
         path = struct.pack("8i", *instance.persistent_id) if instance.is_instance else b""
-        if not instance.show_self:
-            return
+        show_self, show_strands = instance.show_self, instance.show_particles
         obj = instance.object
+        if not show_self and not (show_strands and obj.particle_systems):
+            return
         original = obj.original
         key, owner = self.key_of(original), obj
         if path:
             owner = instance.parent
             key = b"%b/%b/%b" % (self.key_of(owner.original), key, path)
+            if owner.original == original:  # a part of its geometry: the strands are not its own
+                show_strands = False
         if self.shown and not self.shown(owner):
             return
         if obj.type == "LIGHT":
             sync_light(self.export, key, obj.data, matrix)
-        elif obj.type in GEOMETRY:
-            self.add_geometry(obj, original, owner, key, matrix)
+        elif obj.type in GEOMETRY or obj.type == "CURVES":
+            for part, *shape in self.shape(obj, original, show_strands):
+                if part or show_self:
+                    self.add_geometry(owner, key + part, *shape, columns(matrix))
         elif obj.type in UNSUPPORTED:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
 
-    def add_geometry(self, obj, original, owner, key, matrix):
-        name, mesh, materials = self.shape(obj, original)
-        if not mesh:
-            return
+    def add_geometry(self, owner, key, name, mesh, materials, matrix):
         unit = owner.name_full
         ident = self.export.new_id(capi.KIND_OBJECT, key)
-        self.export.put_object(ident, (name, unit, mesh, materials), columns(matrix))
+        self.export.put_object(ident, (name, unit, mesh, materials), matrix)
         if unit not in self.units:
             self.units.add(unit)
             self.unit_settings(ident, unit, owner)
 
-    def shape(self, obj, original):
-        """(name, mesh id, material ids by slot) of an evaluated object."""
-        key = (self.key_of(original), obj.data.as_pointer())
+    def shape(self, obj, original, with_strands):
+        """((part, name, mesh id, material ids by slot), ...) of an evaluated object: itself, whose
+        part is empty, and the strands of its particle systems."""
+        key = (self.key_of(original), obj.data.as_pointer(), with_strands)
         found = self.shapes.get(key)
         if found is None:
             slots = self.slots(obj)  # first: the library decodes their images meanwhile
-            found = (obj.name_full, sync_mesh(self.export, obj), slots)
-            self.shapes[key] = found
+            if obj.type == "CURVES":
+                mesh = sync_curves(self.export, obj, self.scene)
+            else:
+                mesh = sync_mesh(self.export, obj)
+            parts = [(b"", obj.name_full, mesh, slots)]
+            if with_strands and obj.particle_systems:
+                for name, mesh, slot in sync_strands(self.export, obj, self.scene,
+                                                     self.for_viewport):
+                    parts.append((b"/hair/" + capi.encode(name), name, mesh,
+                                  slots[min(slot, len(slots) - 1):][:1]))
+            found = self.shapes[key] = tuple(part for part in parts if part[2])
         return found
 
     def slots(self, obj):
@@ -115,6 +129,6 @@ def default_value(row):
 
 
 def sync_objects(export, depsgraph, shown=None):
-    objects = Objects(export, depsgraph.view_layer_eval.material_override, shown)
+    objects = Objects(export, depsgraph, shown)
     for instance in depsgraph.object_instances:
         objects.add(instance)
