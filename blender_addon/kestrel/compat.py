@@ -148,6 +148,11 @@ def curve_counts(curves):
     return _ints(curves.curves, "points_length")
 
 
+def curve_uvs(curves):
+    """float32 (C, 2): where on its surface each curve is rooted, or None where that is not known."""
+    return _attribute(curves, "surface_uv_coordinate", "vector", 2, len(curves.curves), FLOAT)
+
+
 def curve_radii(curves):
     """float32 (N,): the radius at each point, metres; None where there is no such attribute."""
     values = _attribute(curves, "radius", "value", 1, len(curves.points), FLOAT)

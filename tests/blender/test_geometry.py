@@ -344,6 +344,50 @@ class VisibilityTest(LooksTest):
         self.assertEqual(self.visible(), (False, True, True))
 
 
+class OverrideTest(LooksTest):
+    """What a view layer sets in place of the scene's own."""
+
+    def test_material_of_the_view_layer(self):
+        """Every kind of geometry takes it, whatever its slots and faces say; lights keep theirs."""
+        green = emission("Green", (0, 1, 0))
+        two = self.mesh("Two", [(x, y, 0) for y in (-2, 0) for x in (-2, 0, 2)],
+                        [(0, 1, 4, 3), (1, 2, 5, 4)], emission("Red", (1, 0, 0)))
+        two.data.materials.append(emission("Blue", (0, 0, 1)))
+        two.data.polygons[1].material_index = 1
+        self.mesh("None", [(-2, 0, 0), (0, 0, 0), (0, 2, 0), (-2, 2, 0)], [(0, 1, 2, 3)])
+        empty = self.link("Empty", None, Matrix.Translation((0, 0, 0)))
+        collection = bpy.data.collections.new("Instanced")
+        quad = self.mesh("Quad", [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)], [(0, 1, 2, 3)],
+                         emission("White", (1, 1, 1)))
+        self.scene.collection.objects.unlink(quad)
+        collection.objects.link(quad)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        layer = self.scene.view_layers[0]
+        layer.material_override = green
+        picture = self.render()
+        for row in (16, 48):
+            for column in (16, 48):
+                self.assert_color(picture[row, column], (0, 1, 0))
+        layer.material_override = None
+        self.assert_color(self.render()[48, 48], (0, 0, 1))
+
+    def test_samples_of_the_view_layer(self):
+        """Zero means the scene's. An edge across the pixels shows how many there are."""
+        self.mesh("Half", [(-2, -2, 0), (2, -2, 0), (2, 2.1, 0)], [(0, 1, 2)],
+                  emission("White", (1, 1, 1)))
+        self.scene.kestrel.pixel_filter = "box"
+        self.scene.kestrel.filter_width = 1.0
+        layer = self.scene.view_layers[0]
+        self.scene.kestrel.samples = 1
+        counts = []
+        for samples in (0, 16, 0):
+            layer.samples = samples
+            counts.append(len(np.unique(self.render()[..., 0].round(5))))
+        self.assertEqual(counts[0], 2)
+        self.assertGreater(counts[1], 6)
+        self.assertEqual(counts[2], 2)
+
+
 class MaterialSlotTest(LooksTest):
     def test_each_face_has_the_material_of_its_slot(self):
         """Sixteen slots over sixteen faces, in an order of their own, through a modifier."""

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from kestrel import session, sync, tubes
 from mathutils import Matrix
-from support import SceneTest, diffuse, emission, look_at, turned
+from support import SceneTest, diffuse, emission, image, look_at, textured, turned
 
 
 def hair_curves(strands, radius=None):
@@ -200,6 +200,26 @@ class PictureTest(SceneTest):
         of_parents = count_triangles()
         self.assertEqual(of_children, 7 * of_parents)
         self.assertEqual(of_all, 8 * of_parents)
+
+    def test_hair_takes_the_emitters_texture(self):
+        """Each strand has the colour of the image where it grows, children too."""
+        pixels = np.ones((1, 2, 4), np.float32)
+        pixels[0, 0, :3], pixels[0, 1, :3] = (1, 0, 0), (0, 1, 0)
+        material, _ = textured("Halves", image("Halves", pixels, non_color=True),
+                               interpolation="Closest")
+        emitter = self.plane("Emitter", 4, material)
+        emitter.modifiers.new("Hair", "PARTICLE_SYSTEM")
+        settings = emitter.particle_systems[0].settings
+        settings.type, settings.count, settings.hair_length = "HAIR", 100, 0.1
+        settings.radius_scale = 0.2
+        settings.child_type, settings.rendered_child_count = "INTERPOLATED", 5
+        emitter.show_instancer_for_render = False
+        picture = self.render()
+        left, right = picture[:, 2:30], picture[:, 34:62]
+        self.assertGreater((left[..., 0] > 0.5).mean(), 0.3)
+        self.assertEqual(left[..., 1].max(), 0.0)
+        self.assertGreater((right[..., 1] > 0.5).mean(), 0.3)
+        self.assertEqual(right[..., 0].max(), 0.0)
 
     def test_hair_looks_as_in_cycles(self):
         """A tuft of 400 tapering strands: as much of it is covered, and as brightly."""

@@ -22,7 +22,7 @@ def export_depsgraph(session, depsgraph, camera, say, settings=None):
     export = Export(session, say, scene.kestrel.environment_ior)
     size = sync_camera(export, camera, scene.render)
     ambient = sync_world(export, scene.world)
-    sync_settings(export, scene, ambient)
+    sync_settings(export, scene, depsgraph.view_layer_eval, ambient)
     for name, value in (settings or {}).items():
         export.scene.set_setting(name, value)
     sync_objects(export, depsgraph)
@@ -40,7 +40,7 @@ def export_viewport(session, depsgraph, space, say, touched=None):
     scene = depsgraph.scene_eval
     export = Export(session, say, scene.kestrel.environment_ior, touched)
     ambient = sync_world(export, scene.world)
-    sync_settings(export, scene, ambient, VIEWPORT_SETTINGS)
+    sync_settings(export, scene, depsgraph.view_layer_eval, ambient, VIEWPORT_SETTINGS)
     sync_objects(export, depsgraph, lambda obj: obj.visible_in_viewport_get(space))
     export.finish()
 

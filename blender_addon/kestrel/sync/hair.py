@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hair: curves objects, and the strands of particle systems, as tubes in object space."""
 
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -12,20 +13,28 @@ from ..session import digest
 RADIUS = 0.005  # metres, of curves without a radius of their own
 
 
+@dataclass(frozen=True)
+class Strands:
+    points: np.ndarray      # float32 (N, 3), object space, one strand after the other
+    radii: np.ndarray       # float32 (N,), metres
+    counts: np.ndarray      # int (S,): points of each strand
+    uvs: np.ndarray = None  # float32 (S, 2): where on the surface it grows; None: not known
+
+
 # ---- reading ---------------------------------------------------------------------------------
 
 def curves_strands(curves):
-    """(points, radii, counts) of evaluated curves data."""
+    """The Strands of evaluated curves data."""
     points = compat.curve_points(curves)
     radii = compat.curve_radii(curves)
     if radii is None:
         radii = np.full(len(points), RADIUS, np.float32)
-    return points, radii, compat.curve_counts(curves)
+    return Strands(points, radii, compat.curve_counts(curves), compat.curve_uvs(curves))
 
 
-def strand_systems(obj, for_viewport):
-    """The particle systems of an evaluated object whose strands are drawn."""
-    return [modifier.particle_system for modifier in obj.modifiers
+def strand_modifiers(obj, for_viewport):
+    """The modifiers of an evaluated object whose particle systems' strands are drawn."""
+    return [modifier for modifier in obj.modifiers
             if modifier.type == "PARTICLE_SYSTEM"
             and (modifier.show_viewport if for_viewport else modifier.show_render)
             and modifier.particle_system.settings.type == "HAIR"
@@ -55,16 +64,31 @@ def _profile(settings, along):
     return half * (settings.tip_radius + share * (settings.root_radius - settings.tip_radius))
 
 
-def particle_strands(obj, system, for_viewport):
-    """(points, radii, counts) of a particle system, in the space of its evaluated object."""
+def _strand_uvs(obj, modifier, numbers):
+    """float32 (S, 2): the emitter's UVs where these strands grow; None where it has none."""
+    layers = getattr(obj.data, "uv_layers", ())
+    index = next((i for i, layer in enumerate(layers) if layer.active_render), None)
+    system = modifier.particle_system
+    if index is None or not system.particles:
+        return None
+    read, particles = system.uv_on_emitter, system.particles
+    last = len(particles) - 1  # children are told by their number alone
+    places = (tuple(read(modifier, particle=particles[min(number, last)], particle_no=number,
+                         uv_no=index)) for number in numbers)
+    return np.fromiter(chain.from_iterable(places), np.float32).reshape(-1, 2)
+
+
+def particle_strands(obj, modifier, for_viewport):
+    """The Strands of a particle system."""
+    system = modifier.particle_system
     settings = system.settings
     step = settings.display_step if for_viewport else settings.render_step
     count = 2 ** step + 1
     if settings.kink == "SPIRAL":
         count += settings.kink_extra_steps
-    read, steps = system.co_hair, range(count)
+    read, steps, numbers = system.co_hair, range(count), _strand_numbers(system, for_viewport)
     places = (read(obj, particle_no=number, step=step).to_tuple()
-              for number in _strand_numbers(system, for_viewport) for step in steps)
+              for number in numbers for step in steps)
     points = np.fromiter(chain.from_iterable(places), np.float32).reshape(-1, count, 3)
     matrix = np.array(obj.matrix_world.inverted_safe(), np.float32)
     lengths = np.linalg.norm(np.diff(points, axis=1), axis=2)
@@ -75,24 +99,27 @@ def particle_strands(obj, system, for_viewport):
     radii = _profile(settings, along).astype(np.float32)
     if settings.use_close_tip:
         radii[:, -1] = 0.0
-    return points.reshape(-1, 3), radii.reshape(-1), np.full(len(points), count)
+    return Strands(points.reshape(-1, 3), radii.reshape(-1), np.full(len(points), count),
+                   _strand_uvs(obj, modifier, numbers))
 
 
 # ---- sending ---------------------------------------------------------------------------------
 
 def _send(export, key, name, strands, subdivisions):
     """Id of these strands' tubes, or 0 where there are none."""
-    points, radii, counts = strands
-    segments = len(points) - len(counts)
+    segments = len(strands.points) - len(strands.counts)
     if segments <= 0:
         return 0
     ident = export.new_id(capi.KIND_MESH, key)
 
     def send():
         sides, steps = tubes.fineness(segments, 2 ** subdivisions)
-        made = tubes.tubes(*tubes.smooth(points, radii, counts, steps), sides)
-        export.scene.set_mesh(ident, name, made.positions, made.triangles, made.normals)
-    export.put(capi.KIND_MESH, ident, (digest(points, radii, counts), subdivisions), send)
+        made = tubes.tubes(
+            *tubes.smooth(strands.points, strands.radii, strands.counts, steps), sides)
+        uvs = None if strands.uvs is None else np.repeat(strands.uvs[made.curves], 3, axis=0)
+        export.scene.set_mesh(ident, name, made.positions, made.triangles, made.normals, uvs)
+    content = digest(strands.points, strands.radii, strands.counts, strands.uvs)
+    export.put(capi.KIND_MESH, ident, (content, subdivisions), send)
     return ident
 
 
@@ -123,14 +150,15 @@ def sync_strands(export, obj, scene, for_viewport):
     """[(name, mesh id, material slot)] of the particle systems of an evaluated object."""
     owner = compat.datablock_key(obj.original)
     result = []
-    for system in strand_systems(obj, for_viewport):
+    for modifier in strand_modifiers(obj, for_viewport):
+        system = modifier.particle_system
         key = f"{owner}/hair/{system.name}"
         if key not in export.meshes:
             state = (_subdivisions(scene), for_viewport)
             ident = export.unchanged_mesh(key, owner, state)
             if ident is None:
                 ident = _send(export, key, f"{obj.name_full}, {system.name}",
-                              particle_strands(obj, system, for_viewport), state[0])
+                              particle_strands(obj, modifier, for_viewport), state[0])
             export.meshes[key] = ident
             export.remember_mesh(key, ident, state)
         result.append((f"{obj.name_full}, {system.name}", export.meshes[key],

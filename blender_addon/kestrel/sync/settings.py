@@ -19,10 +19,12 @@ def rows(scope):
     return [row for row in loader.parameter_table() if row["scope"] == scope]
 
 
-def sync_settings(export, scene, world_ambient, without=()):
-    """Send a scene's settings, but those called `without`. The world's ambient light joins the
-    artist's own, and Blender's fixed thread count holds where Kestrel's is left automatic."""
+def sync_settings(export, scene, view_layer, world_ambient, without=()):
+    """Send a scene's settings, but those called `without`. The view layer's own samples count
+    where it has some. The world's ambient light joins the artist's own, and Blender's fixed thread
+    count holds where Kestrel's is left automatic."""
     values = {row["name"]: getattr(scene.kestrel, row["name"]) for row in rows("scene")}
+    values["samples"] = view_layer.samples or values["samples"]
     values["ambient"] = [own + world for own, world in zip(values["ambient"], world_ambient)]
     if values["threads"] == 0 and scene.render.threads_mode == "FIXED":
         values["threads"] = scene.render.threads

@@ -26,6 +26,21 @@ class KESTREL_VIEW_LAYER_PT_passes(KestrelPanel, bpy.types.Panel):
         layout.column(align=True).prop(layer.kestrel, "passes")
 
 
+class KESTREL_VIEW_LAYER_PT_override(KestrelPanel, bpy.types.Panel):
+    bl_label = "Override"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+    needs_library = False
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(context.view_layer, "material_override")
+        layout.prop(context.view_layer, "samples")
+
+
 CLASSES = (
     KESTREL_VIEW_LAYER_PT_passes,
+    KESTREL_VIEW_LAYER_PT_override,
 )
