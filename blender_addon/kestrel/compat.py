@@ -236,6 +236,12 @@ def uses_nodes(datablock):
     return datablock.node_tree is not None and getattr(datablock, "use_nodes", True)
 
 
+def chooses_nodes(datablock):
+    """Whether this version leaves it to the artist if a node tree is used."""
+    prop = datablock.bl_rna.properties.get("use_nodes")
+    return prop is not None and not getattr(prop, "is_deprecated", False)
+
+
 def alpha_cutoff(material):
     """Alpha below which a masked surface is absent."""
     if getattr(material, "blend_method", "") == "CLIP":

@@ -109,15 +109,17 @@ const std::vector<Row<Settings>>& scene_rows() {
       row(&S::budget_ms,
           {"budget_ms", kScene, kReal, "0", 0, 1e6, {}, "ms", "T",
            "Time that ray tracing may take per frame, in milliseconds. Objects that do not fit "
-           "keep their rasterised look. 0 means no limit"}),
+           "keep their rasterised look, so less is faster and shows fewer shadows, reflections "
+           "and refractions. 0 means no limit"}),
       row(&S::selection_inertia,
           {"selection_inertia", kScene, kReal, "500", 0, 1e9, {}, "", "I",
            "How strongly an object that was ray traced in the last frame is preferred in the "
-           "next. Higher values flicker less and react later; the unit is that of visibility, "
-           "pixels per metre"}),
+           "next. Higher values flicker less and react later, and cost no time; the unit is that "
+           "of visibility, pixels per metre"}),
       row(&S::max_depth,
           {"max_depth", kScene, kInt, "10", 1, 64, {}, "", "",
-           "Longest chain of reflections and refractions. Each step may cost another ray"}),
+           "Longest chain of reflections and refractions that is followed. Glass and mirrors "
+           "that face each other need more; each step may cost another ray"}),
       row(&S::importance_cutoff,
           {"importance_cutoff", kScene, kReal, "0.01", 0, 1, {}, "", "",
            "A reflection or refraction is no longer followed once its share of the pixel falls "
@@ -125,47 +127,53 @@ const std::vector<Row<Settings>>& scene_rows() {
       row(&S::ambient,
           {"ambient", kScene, kColor, "0 0 0", 0, 1e6, {}, "", "",
            "Global ambient light: linear red, green and blue, reflected by every surface's "
-           "ambient colour"}),
+           "ambient colour. It costs no time"}),
       row(&S::environment_ior,
           {"environment_ior", kScene, kReal, "1", 0.1, 10, {}, "", "",
-           "Index of refraction of what surrounds the objects: 1 for air, 1.33 for water"}),
+           "Index of refraction of what surrounds the objects: 1 for air, 1.33 for water. It "
+           "bends light at every glass surface and costs no time"}),
       row(&S::selection,
           {"selection", kScene, kEnum, "graph", 0, 0, {"graph", "all", "none"}, "", "",
-           "Which objects are ray traced: the most relevant within the budget, all visible ones, "
-           "or none"}),
+           "Which objects are ray traced: the most relevant within the budget, all visible ones "
+           "whatever it costs, or none, which is the fastest"}),
       row(&S::shading_model,
           {"shading_model", kScene, kEnum, "blinn_phong", 0, 0, {"blinn_phong"}, "", "",
-           "How light is reflected by a surface"}),
+           "How light is reflected by a surface: the formula for diffuse reflection and "
+           "highlights"}),
       row(&S::primary,
           {"primary", kScene, kEnum, "auto", 0, 0, {"auto", "raster", "rays"}, "", "",
            "How the objects in view are found: rasterised with OpenGL, by rays on the processor, "
            "or whichever is faster on this machine"}),
       row(&S::tracer,
           {"tracer", kScene, kEnum, "auto", 0, 0, {"auto", "embree"}, "", "",
-           "What traces shadows, reflections and refractions"}),
+           "What traces shadows, reflections and refractions, which decides how exact they are "
+           "and how long they take"}),
       row(&S::samples,
           {"samples", kScene, kInt, "16", 1, 65536, {}, "", "",
-           "Anti-aliasing samples per pixel. The time grows in proportion"}),
+           "Anti-aliasing samples per pixel of the picture. More give smoother edges; the time "
+           "grows in proportion"}),
       row(&S::first_sample,
           {"first_sample", kScene, kInt, "0", 0, 1 << 24, {}, "", "",
            "Number of the first sample. Pictures of consecutive samples, weighted by how many "
            "each has, add up to the picture of all of them"}),
       row(&S::pixel_filter,
           {"pixel_filter", kScene, kEnum, "blackman_harris", 0, 0, {"box", "blackman_harris"}, "",
-           "", "How samples are weighted around a pixel's centre"}),
+           "", "How samples are weighted around a pixel's centre: sharp or smooth. It costs no time"}),
       row(&S::filter_width,
           {"filter_width", kScene, kReal, "1.5", 0.01, 10, {}, "px", "",
-           "Width of the pixel filter. Wider is softer"}),
+           "Width of the pixel filter. Wider is softer, narrower is sharper and shows steps at "
+           "edges. It costs no time"}),
       row(&S::shadow_mode,
           {"shadow_mode", kScene, kEnum, "hard", 0, 0, {"hard"}, "", "",
            "Shadow edges: hard treats every light as a point or a direction"}),
       row(&S::threads,
           {"threads", kScene, kInt, "0", 0, 1024, {}, "", "",
-           "Processor threads to use, 0 for all. The picture does not depend on it"}),
+           "Processor threads to use, 0 for all. Fewer leave the machine free for other work and "
+           "take longer; the picture does not depend on it"}),
       row(&S::validate_areas,
           {"validate_areas", kScene, kBool, "false", 0, 0, {}, "", "A",
            "Also measure visible areas with occlusion queries and report objects whose area "
-           "differs. Needs OpenGL; for checking only"}),
+           "differs. Needs OpenGL and takes longer; for checking only"}),
   };
   return rows;
 }
@@ -177,20 +185,23 @@ const std::vector<Row<ObjectSettings>>& object_rows() {
       row(&S::relevance,
           {"relevance", kObject, kReal, "1", 0, 1e6, {}, "", "K",
            "How much this object matters. Within the budget, objects of higher relevance are ray "
-           "traced first; 0 leaves it for last"}),
+           "traced first, at the cost of the others; 0 leaves it for last"}),
       row(&S::cost,
           {"cost", kObject, kReal, "0", 0, 1e6, {}, "", "E",
-           "Estimated cost of a ray on this object, 1 for an average one. 0 learns it from "
-           "measured times"}),
+           "Estimated cost of a ray on this object, 1 for an average one. Dearer objects are "
+           "chosen later. 0 learns it from measured times"}),
       row(&S::shadows,
           {"shadows", kObject, kEnum, "auto", 0, 0, kModes, "", "",
-           "Shadows received by this object: decided by the budget, always, or never ray traced"}),
+           "Shadows received by this object: ray traced as the budget allows, always, or never. A "
+           "ray for each light and pixel"}),
       row(&S::reflections,
           {"reflections", kObject, kEnum, "auto", 0, 0, kModes, "", "",
-           "Reflections in this object: decided by the budget, always, or never ray traced"}),
+           "Reflections in this object: ray traced as the budget allows, always, or never. A ray "
+           "for each pixel, and one more for each surface that is mirrored in turn"}),
       row(&S::refractions,
           {"refractions", kObject, kEnum, "auto", 0, 0, kModes, "", "",
-           "Refraction through this object: decided by the budget, always, or never ray traced"}),
+           "Refraction through this object: ray traced as the budget allows, always, or never. Two "
+           "rays or more for each pixel"}),
   };
   return rows;
 }

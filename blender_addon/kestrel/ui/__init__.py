@@ -4,20 +4,22 @@ make sense with it."""
 
 import bpy
 
-from . import light, material, object, render, view_layer, world
+from . import light, material, object, presets, render, view_layer, world
 from .common import ENGINE
 
-TABS = (render, object, view_layer, material, light, world)
+TABS = (presets, render, object, view_layer, material, light, world)
 CLASSES = tuple(cls for tab in TABS for cls in tab.CLASSES)
 
-# Panels for every engine without one of its own that show what Kestrel has not.
+# Panels for every engine without one of its own that show what Kestrel has not, or shows itself.
 NOT_FOR_KESTREL = {
-    "DATA_PT_area", "DATA_PT_falloff_curve", "DATA_PT_light", "DATA_PT_preview", "DATA_PT_spot",
-    "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "RENDER_PT_stereoscopy",
-    "WORLD_PT_context_world",
+    "DATA_PT_area", "DATA_PT_camera_stereoscopy", "DATA_PT_falloff_curve", "DATA_PT_light",
+    "DATA_PT_preview", "DATA_PT_spot", "DATA_PT_volume_render",
+    "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "OBJECT_PT_shading",
+    "RENDER_PT_output_views", "RENDER_PT_stereoscopy", "WORLD_PT_context_world",
 }
-NOT_FOR_KESTREL_PREFIXES = ("MATERIAL_PT_freestyle", "RENDER_PT_freestyle", "RENDER_PT_gpencil",
-                            "RENDER_PT_grease_pencil", "VIEWLAYER_PT_freestyle")
+NOT_FOR_KESTREL_PREFIXES = ("DATA_PT_lightprobe", "MATERIAL_PT_freestyle", "RENDER_PT_freestyle",
+                            "RENDER_PT_gpencil", "RENDER_PT_grease_pencil", "RENDER_PT_simplify",
+                            "VIEWLAYER_PT_freestyle")
 
 
 def shared_panels():

@@ -3,6 +3,7 @@
 
 import textwrap
 
+from .. import compat
 from ..native import loader
 
 ENGINE = "KESTREL"
@@ -19,6 +20,12 @@ def draw_text(layout, text):
 def draw_library_error(layout):
     """Why nothing can be rendered, and what to do."""
     draw_text(layout, loader.error())
+
+
+def draw_use_nodes(layout, datablock):
+    """The switch between nodes and plain settings, in the versions that have a choice."""
+    if compat.chooses_nodes(datablock):
+        layout.prop(datablock, "use_nodes", icon="NODETREE")
 
 
 def draw_node_input(layout, tree, output_type, input_name):
@@ -50,8 +57,10 @@ class KestrelPanel:
 
 
 class TablePanel(KestrelPanel):
-    """A panel of rows of the parameter table, `names`, of what owner() gives."""
+    """A panel of rows of the parameter table, `names`, of what owner() gives. Those that leave
+    nothing to choose are not shown."""
     names = ()
+    texts = {}  # name: another text than the property's own
 
     @staticmethod
     def owner(context):
@@ -61,5 +70,16 @@ class TablePanel(KestrelPanel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = self.bl_context == "object"
-        for name in self.names:
-            layout.prop(self.owner(context).kestrel, name)
+        self.draw_rows(layout.column(), context, self.names)
+
+    def draw_rows(self, layout, context, names):
+        settings = self.owner(context).kestrel
+        for name in names:
+            if offers_choice(settings.bl_rna.properties[name]):
+                text = self.texts.get(name)
+                layout.prop(settings, name, **({} if text is None else {"text": text}))
+
+
+def offers_choice(prop):
+    """Whether a property has more than one value, not counting that Kestrel chooses it itself."""
+    return prop.type != "ENUM" or len({item.identifier for item in prop.enum_items} - {"auto"}) > 1

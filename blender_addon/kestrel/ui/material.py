@@ -3,7 +3,8 @@
 
 import bpy
 
-from .common import KestrelPanel, draw_node_input
+from .. import compat
+from .common import KestrelPanel, draw_node_input, draw_use_nodes
 
 
 class KESTREL_MATERIAL_PT_slots(KestrelPanel, bpy.types.Panel):
@@ -29,7 +30,12 @@ class KESTREL_MATERIAL_PT_slots(KestrelPanel, bpy.types.Panel):
         column.operator("object.material_slot_add", icon="ADD", text="")
         column.operator("object.material_slot_remove", icon="REMOVE", text="")
         column.menu("MATERIAL_MT_context_menu", icon="DOWNARROW_HLT", text="")
-        layout.template_ID(obj, "active_material", new="material.new")
+        row = layout.row()
+        row.template_ID(obj, "active_material", new="material.new")
+        slot = context.material_slot
+        if slot is not None:
+            row.prop(slot, "link", icon_only=True,
+                     icon="MESH_DATA" if slot.link == "DATA" else "OBJECT_DATA")
         if obj.mode == "EDIT":
             row = layout.row(align=True)
             row.operator("object.material_slot_assign", text="Assign")
@@ -37,8 +43,7 @@ class KESTREL_MATERIAL_PT_slots(KestrelPanel, bpy.types.Panel):
             row.operator("object.material_slot_deselect", text="Deselect")
 
 
-class KESTREL_MATERIAL_PT_surface(KestrelPanel, bpy.types.Panel):
-    bl_label = "Surface"
+class MaterialPanel(KestrelPanel):
     bl_context = "material"
     needs_library = False
 
@@ -46,11 +51,23 @@ class KESTREL_MATERIAL_PT_surface(KestrelPanel, bpy.types.Panel):
     def shown(cls, context):
         return context.material is not None and not context.material.grease_pencil
 
+
+class KESTREL_MATERIAL_PT_preview(MaterialPanel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        self.layout.template_preview(context.material)
+
+
+class KESTREL_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
+    bl_label = "Surface"
+
     def draw(self, context):
         layout, material = self.layout, context.material
         layout.use_property_split = True
-        layout.prop(material, "use_nodes", icon="NODETREE")
-        if material.use_nodes and material.node_tree:
+        draw_use_nodes(layout, material)
+        if compat.uses_nodes(material):
             draw_node_input(layout, material.node_tree, None, "Surface")
         else:
             layout.prop(material, "diffuse_color", text="Base Color")
@@ -58,11 +75,8 @@ class KESTREL_MATERIAL_PT_surface(KestrelPanel, bpy.types.Panel):
             layout.prop(material, "roughness")
 
 
-class KESTREL_MATERIAL_PT_settings(KestrelPanel, bpy.types.Panel):
+class KESTREL_MATERIAL_PT_settings(MaterialPanel, bpy.types.Panel):
     bl_label = "Settings"
-    bl_context = "material"
-    needs_library = False
-    shown = KESTREL_MATERIAL_PT_surface.shown
 
     def draw(self, context):
         layout, material = self.layout, context.material
@@ -74,6 +88,7 @@ class KESTREL_MATERIAL_PT_settings(KestrelPanel, bpy.types.Panel):
 
 CLASSES = (
     KESTREL_MATERIAL_PT_slots,
+    KESTREL_MATERIAL_PT_preview,
     KESTREL_MATERIAL_PT_surface,
     KESTREL_MATERIAL_PT_settings,
 )

@@ -9,7 +9,13 @@ from .common import TablePanel
 class KESTREL_OBJECT_PT_tracing(TablePanel, bpy.types.Panel):
     bl_label = "Ray Tracing"
     bl_context = "object"
-    names = ("relevance", "cost", "shadows", "reflections", "refractions")
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        self.draw_rows(layout.column(), context, ("relevance", "cost"))
+        self.draw_rows(layout.column(align=True), context,
+                       ("shadows", "reflections", "refractions"))
 
     @staticmethod
     def owner(context):

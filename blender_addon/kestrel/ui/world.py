@@ -3,7 +3,8 @@
 
 import bpy
 
-from .common import KestrelPanel, draw_node_input
+from .. import compat
+from .common import KestrelPanel, draw_node_input, draw_use_nodes
 
 
 class KESTREL_WORLD_PT_context(KestrelPanel, bpy.types.Panel):
@@ -16,8 +17,7 @@ class KESTREL_WORLD_PT_context(KestrelPanel, bpy.types.Panel):
         self.layout.template_ID(context.scene, "world", new="world.new")
 
 
-class KESTREL_WORLD_PT_surface(KestrelPanel, bpy.types.Panel):
-    bl_label = "Surface"
+class WorldPanel(KestrelPanel):
     bl_context = "world"
     needs_library = False
 
@@ -25,11 +25,23 @@ class KESTREL_WORLD_PT_surface(KestrelPanel, bpy.types.Panel):
     def shown(cls, context):
         return context.world is not None
 
+
+class KESTREL_WORLD_PT_preview(WorldPanel, bpy.types.Panel):
+    bl_label = "Preview"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        self.layout.template_preview(context.world)
+
+
+class KESTREL_WORLD_PT_surface(WorldPanel, bpy.types.Panel):
+    bl_label = "Surface"
+
     def draw(self, context):
         layout, world = self.layout, context.world
         layout.use_property_split = True
-        layout.prop(world, "use_nodes", icon="NODETREE")
-        if world.use_nodes and world.node_tree:
+        draw_use_nodes(layout, world)
+        if compat.uses_nodes(world):
             draw_node_input(layout, world.node_tree, "OUTPUT_WORLD", "Surface")
         else:
             layout.prop(world, "color")
@@ -37,5 +49,6 @@ class KESTREL_WORLD_PT_surface(KestrelPanel, bpy.types.Panel):
 
 CLASSES = (
     KESTREL_WORLD_PT_context,
+    KESTREL_WORLD_PT_preview,
     KESTREL_WORLD_PT_surface,
 )
