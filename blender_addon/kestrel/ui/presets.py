@@ -54,8 +54,8 @@ class KESTREL_OT_sampling_preset_add(AddPresetBase, bpy.types.Operator):
     bl_label = "Add Sampling Preset"
     preset_menu = "KESTREL_PT_sampling_presets"
     preset_subdir = SUBFOLDER
-    preset_defines = ["kestrel = bpy.context.scene.kestrel"]
-    preset_values = [f"kestrel.{name}" for name in VALUES]
+    # Whole paths, as names that presets may define are unknown to Blender 4.3 under Python 3.13.
+    preset_values = [f"bpy.context.scene.kestrel.{name}" for name in VALUES]
 
 
 CLASSES = (
