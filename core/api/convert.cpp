@@ -175,6 +175,13 @@ ObjectInput object_from(const KestrelObject& object) {
   out.materials.assign(materials.begin(), materials.end());
   out.world_from_object = matrix_from(object.world_from_object);
   out.unit = text_from(object.unit);
+  if (object.hidden_from & ~uint32_t{kAllRays}) {
+    fail(ErrorCode::invalid_argument,
+         "Object '{}': {} of 'hidden_from' is no sum of KestrelRays. Use 0 to {}.", out.name,
+         object.hidden_from, uint32_t{kAllRays});
+  }
+  out.hidden_from = static_cast<uint8_t>(object.hidden_from);
+  out.holdout = object.holdout;
   return out;
 }
 

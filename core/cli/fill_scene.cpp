@@ -57,6 +57,8 @@ void set_object(KestrelScene scene, uint64_t id, const ObjectDescription& object
   o.material_count = materials.size();
   for (int i = 0; i < 12; ++i) o.world_from_object[i] = object.world_from_object[i / 3][i % 3];
   o.unit = object.unit.empty() ? nullptr : object.unit.c_str();
+  o.hidden_from = object.hidden_from;
+  o.holdout = object.holdout;
   check(kestrelSetObject(scene, id, &o));
   for (const auto& [name, value] : object.settings) {
     check(kestrelSetObjectSetting(scene, id, name.c_str(), value.c_str()));

@@ -61,11 +61,21 @@ std::vector<mat4x3> parse_placements(const JsonNode& node) {
 }
 
 std::vector<std::string> object_keys(const std::vector<std::string>& own) {
-  std::vector<std::string> keys = {"name", "unit", "instances"};
+  std::vector<std::string> keys = {"name", "unit", "instances", "hidden_from", "holdout"};
   for (const auto& more : {own, transform_keys(), setting_names("object")}) {
     keys.insert(keys.end(), more.begin(), more.end());
   }
   return keys;
+}
+
+/// What the camera and rays see of the element's objects.
+void parse_visibility(const JsonNode& node, ObjectDescription& object) {
+  if (const auto kinds = node.find("hidden_from")) {
+    for (const JsonNode& kind : kinds->items(16)) {
+      object.hidden_from |= 1u << kind.choice({"camera", "shadow", "reflection", "refraction"});
+    }
+  }
+  if (const auto holdout = node.find("holdout")) object.holdout = holdout->boolean();
 }
 
 void expect_room(const JsonNode& node, size_t more, const SceneDescription& scene) {
@@ -243,6 +253,7 @@ void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& cont
       object.materials = {material_of(material, entry, replacements)};
       object.world_from_object = combined(placement, part.model_from_mesh);
       object.settings = settings;
+      parse_visibility(node, object);
       objects.push_back(std::move(object));
     }
   }
@@ -283,6 +294,7 @@ void parse_object(const JsonNode& node, size_t index, ParseContext& context) {
   if (unit) object.unit = unit->text();
   object.materials = parse_slots(node, context.materials);
   object.settings = parse_settings(node, "object");
+  parse_visibility(node, object);
   const std::vector<mat4x3> placements = parse_placements(node);
   expect_room(node, placements.size(), context.scene);
   for (const mat4x3& placement : placements) {

@@ -65,6 +65,8 @@ struct ObjectDescription {
   std::vector<int> materials;  // by slot; kNoIndex: the default grey
   mat4x3 world_from_object{1.0f};
   std::vector<std::pair<std::string, std::string>> settings;  // of its unit
+  uint32_t hidden_from = 0;                                   // KestrelRays
+  bool holdout = false;
 };
 
 /// Where the camera stands at a moment of its path.

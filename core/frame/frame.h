@@ -72,8 +72,20 @@ struct GBuffer {
   Plane<uint32_t> object;       // scene object index + 1, 0 = nothing
   Plane<uint32_t> material;     // scene material index (0 also where nothing)
   Plane<vec3> lighting;         // P-buffer: L, lit without shadows, reflections, refractions
+  Plane<uint8_t> holdout;       // 1: a holdout is in front, and so nothing; empty without holdouts
 
+  /// The planes of every frame; `holdout` stays as it is.
   void resize(int new_width, int new_height);
+
+  /// Makes a pixel show nothing, in front of this radiance.
+  void set_nothing(size_t i, const vec3& radiance) {
+    position[i] = normal[i] = normal_geometric[i] = vec3(0.0f);
+    emission[i] = ambient[i] = optical[i] = vec3(0.0f);
+    diffuse[i] = specular[i] = vec4(0.0f);
+    depth[i] = 0.0f;
+    object[i] = material[i] = 0;
+    lighting[i] = radiance;
+  }
 };
 
 /// Bits of what stage 3 does for a unit.
@@ -133,6 +145,8 @@ struct EffectBuffers {
   Plane<vec3> shadow;      // S = 1 - Σ blocked light, unclamped
   Plane<vec3> reflection;  // M, already tinted by the material's reflection colour
   Plane<vec3> refraction;  // R, already tinted by the material's transmission colour
+  Plane<float> clear;      // share of R behind which is nothing: a transparent film or a holdout;
+                           // empty where the scene cannot have any
 };
 
 }  // namespace kestrel

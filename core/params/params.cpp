@@ -174,6 +174,10 @@ const std::vector<Row<Settings>>& scene_rows() {
           {"validate_areas", kScene, kBool, "false", 0, 0, {}, "", "A",
            "Also measure visible areas with occlusion queries and report objects whose area "
            "differs. Needs OpenGL and takes longer; for checking only"}),
+      row(&S::film_transparent,
+          {"film_transparent", kScene, kBool, "false", 0, 0, {}, "", "",
+           "Leave the world out of the picture: it still lights and shows in mirrors and glass, "
+           "and the picture's alpha is 0 where nothing else is seen"}),
   };
   return rows;
 }

@@ -39,6 +39,7 @@ struct Settings {
   ShadowMode shadow_mode = ShadowMode::hard;
   int threads = 0;
   bool validate_areas = false;
+  bool film_transparent = false;
 };
 
 /// Settings of one object (paper: K and E), and per-effect overrides.

@@ -31,7 +31,8 @@ RtMesh::RtMesh(std::shared_ptr<const Mesh> mesh, const std::vector<bool>& filter
   }
 }
 
-void RtMesh::attach(RTCDevice device, RTCScene scene, unsigned slot, const RtScene* owner) const {
+void RtMesh::attach(RTCDevice device, RTCScene scene, unsigned slot, unsigned mask,
+                    const RtScene* owner) const {
   const std::vector<vec3>& positions = positions_ws_.empty() ? mesh_->positions : positions_ws_;
   for (unsigned kind = 0; kind < 2; ++kind) {
     const std::vector<uvec3>& indices = whole_[kind] ? mesh_->triangles : indices_[kind];
@@ -46,6 +47,7 @@ void RtMesh::attach(RTCDevice device, RTCScene scene, unsigned slot, const RtSce
       rtcSetGeometryIntersectFilterFunction(geometry, embree::skip_masked);
       rtcSetGeometryOccludedFilterFunction(geometry, embree::attenuate_shadow);
     }
+    rtcSetGeometryMask(geometry, mask);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, 2 * slot + kind);
     rtcReleaseGeometry(geometry);

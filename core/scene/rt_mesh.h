@@ -21,8 +21,10 @@ class RtMesh {
          const mat4x3* world_from_object);
 
   /// Adds the geometries under ids 2 * slot (plain) and 2 * slot + 1 (filtered), where they have
-  /// triangles. The mesh must stay where it is; filter functions are given `owner`.
-  void attach(RTCDevice device, RTCScene scene, unsigned slot, const RtScene* owner) const;
+  /// triangles, for the rays of `mask` (RayBits). The mesh must stay where it is; filter functions
+  /// are given `owner`.
+  void attach(RTCDevice device, RTCScene scene, unsigned slot, unsigned mask,
+              const RtScene* owner) const;
 
   /// Triangle of the mesh that a primitive of one of the two geometries is.
   uint32_t triangle(bool filtered, unsigned primitive) const {

@@ -12,11 +12,17 @@ embree::SceneHandle new_scene(RTCDevice device) {
   return scene;
 }
 
+/// RayBits that meet an object.
+unsigned ray_mask(uint8_t hidden_from) {
+  return kAllRays & ~unsigned{hidden_from};
+}
+
 void attach_instance(RTCDevice device, RTCScene top, RTCScene mesh, const mat4x3& transform,
-                     unsigned id) {
+                     unsigned mask, unsigned id) {
   RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(instance, mesh);
   rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &transform);
+  rtcSetGeometryMask(instance, mask);
   rtcCommitGeometry(instance);
   rtcAttachGeometryByID(top, instance, id);
   rtcReleaseGeometry(instance);
@@ -89,8 +95,8 @@ void RtScene::build_static(const std::vector<int>& objects) {
   std::vector<StaticObject> wanted;
   for (const int i : objects) {
     const Object& object = scene_->objects[i];
-    wanted.push_back(
-        {scene_->meshes[object.mesh], object.world_from_object, filtered_slots_[object.mesh]});
+    wanted.push_back({scene_->meshes[object.mesh], object.world_from_object,
+                      filtered_slots_[object.mesh], object.hidden_from});
   }
   if (static_ && wanted == static_built_) return;
   static_built_ = std::move(wanted);
@@ -100,7 +106,8 @@ void RtScene::build_static(const std::vector<int>& objects) {
     static_geometry_.emplace_back(o.mesh, o.filtered_slots, &o.world_from_object);
   }
   for (size_t i = 0; i < static_geometry_.size(); ++i) {
-    static_geometry_[i].attach(device_, static_.get(), static_cast<unsigned>(i), this);
+    static_geometry_[i].attach(device_, static_.get(), static_cast<unsigned>(i),
+                               ray_mask(static_built_[i].hidden_from), this);
   }
   rtcCommitScene(static_.get());
 }
@@ -127,7 +134,7 @@ void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
   instanced_ = std::move(kept);
   tbb::parallel_for(size_t{0}, dirty.size(), [&](size_t i) {
     dirty[i]->scene = new_scene(device_);
-    dirty[i]->geometry.attach(device_, dirty[i]->scene.get(), 0, this);
+    dirty[i]->geometry.attach(device_, dirty[i]->scene.get(), 0, kAllRays, this);
     rtcCommitScene(dirty[i]->scene.get());
   });
 }
@@ -137,14 +144,14 @@ void RtScene::build_top(const std::vector<int>& static_objects) {
   instances_.assign(1, {kNone, nullptr});
   if (static_objects.size() == scene_->objects.size()) return;
   top_ = new_scene(device_);
-  attach_instance(device_, top_.get(), static_.get(), mat4x3(1.0f), 0);
+  attach_instance(device_, top_.get(), static_.get(), mat4x3(1.0f), kAllRays, 0);
   const std::unordered_set<int> in_static(static_objects.begin(), static_objects.end());
   for (size_t i = 0; i < scene_->objects.size(); ++i) {
     if (in_static.contains(static_cast<int>(i))) continue;
     const Object& object = scene_->objects[i];
     const Instanced& mesh = instanced_.at(scene_->meshes[object.mesh].get());
     attach_instance(device_, top_.get(), mesh.scene.get(), object.world_from_object,
-                    static_cast<unsigned>(instances_.size()));
+                    ray_mask(object.hidden_from), static_cast<unsigned>(instances_.size()));
     instances_.push_back({static_cast<int>(i), &mesh.geometry});
   }
   rtcCommitScene(top_.get());

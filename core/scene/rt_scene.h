@@ -41,6 +41,7 @@ class RtScene {
     std::shared_ptr<const Mesh> mesh;
     mat4x3 world_from_object;
     std::vector<bool> filtered_slots;
+    uint8_t hidden_from;
     bool operator==(const StaticObject&) const = default;
   };
   struct Instanced {

@@ -97,6 +97,15 @@ struct Light {
   bool casts_shadow = true;
 };
 
+/// Kinds of rays. Those that go on straight through a surface stay what they were.
+enum RayBits : uint8_t {
+  kCameraRays = 1,
+  kShadowRays = 2,
+  kReflectionRays = 4,
+  kRefractionRays = 8,
+  kAllRays = 15
+};
+
 /// A mesh placed in the world.
 struct Object {
   std::string name;
@@ -105,6 +114,8 @@ struct Object {
   std::vector<int> materials;  // by slot; holds every slot that the mesh uses
   mat4x3 world_from_object{1.0f};
   bool flips_orientation = false;  // negative determinant
+  uint8_t hidden_from = 0;         // RayBits that do not meet it
+  bool holdout = false;            // for camera rays a hole in the picture
 };
 
 /// What the heuristic selects: an object, or all instances of one instancer.
@@ -149,6 +160,10 @@ struct Scene {
   Camera camera;
   World world;
   Settings settings;
+  bool has_holdouts = false;  // whether some object is one
+
+  /// Whether Combined's alpha may be below 1.
+  bool has_alpha() const { return settings.film_transparent || has_holdouts; }
 };
 
 }  // namespace kestrel

@@ -276,6 +276,9 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
   object.name = input.name;
   object.world_from_object = input.world_from_object;
   object.flips_orientation = glm::determinant(mat3(input.world_from_object)) < 0.0f;
+  object.hidden_from = input.hidden_from;
+  object.holdout = input.holdout;
+  out.scene->has_holdouts = out.scene->has_holdouts || input.holdout;
   object.materials.assign(valid.used_slots.back() + 1, 0);
   for (size_t slot = 0; slot < std::min(object.materials.size(), input.materials.size()); ++slot) {
     const uint64_t id = input.materials[slot];

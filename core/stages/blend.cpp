@@ -4,6 +4,14 @@
 #include "frame/region_loops.h"
 
 namespace kestrel {
+namespace {
+
+/// Whether the picture has a hole at a pixel that shows nothing.
+bool is_hole(const Scene& scene, const GBuffer& gbuffer, size_t i) {
+  return scene.settings.film_transparent || (scene.has_holdouts && gbuffer.holdout[i]);
+}
+
+}  // namespace
 
 vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflection,
                  const vec3& refraction, float reflectivity, float transparency) {
@@ -26,6 +34,12 @@ void BlendStage::run(const FrameInputs& inputs, const GBuffer& gbuffer, const Se
       combined[i] = vec4(blend_pixel(gbuffer.lighting[i], effects.shadow[i], effects.reflection[i],
                                      effects.refraction[i], reflectivity, transparency),
                          1.0f);
+      if (!inputs.scene.has_alpha()) continue;
+      if (object == 0) {
+        if (is_hole(inputs.scene, gbuffer, i)) combined[i] = vec4(0.0f);
+      } else {
+        combined[i].w -= blend_weights(reflectivity, transparency).refraction * effects.clear[i];
+      }
     }
   });
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "frame/region_loops.h"
 #include "gl/debug.h"
 #include "gl/shader_library.h"
 #include "scene/gpu_scene.h"
@@ -28,6 +29,20 @@ void set_common_state() {
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+/// Makes what was drawn of holdouts nothing.
+void punch_holdouts(const FrameInputs& inputs, GBuffer& out) {
+  const Scene& scene = inputs.scene;
+  out.holdout.resize(scene.has_holdouts ? out.object.size() : 0);
+  if (!scene.has_holdouts) return;
+  const size_t width = static_cast<size_t>(out.width);
+  for_rows(inputs.region, [&](int y) {
+    for (size_t i = y * width; i < (y + 1) * width; ++i) {
+      out.holdout[i] = out.object[i] != 0 && scene.objects[out.object[i] - 1].holdout;
+      if (out.holdout[i]) out.set_nothing(i, vec3(0.0f));
+    }
+  });
 }
 
 }  // namespace
@@ -86,7 +101,7 @@ std::vector<size_t> RasterPasses::visible_objects(const FrameInputs& inputs) con
   std::vector<size_t> out;
   for (size_t i = 0; i < scene().objects.size(); ++i) {
     const Object& object = scene().objects[i];
-    if (object.mesh == kNone) continue;
+    if (object.mesh == kNone || object.hidden_from & kCameraRays) continue;
     const Bounds& bounds = gpu_scene.mesh(object.mesh).bounds();
     if (may_be_visible(transformed(bounds, object.world_from_object), view)) out.push_back(i);
   }
@@ -159,7 +174,7 @@ std::vector<uint64_t> RasterPasses::occlusion_areas(const FrameInputs& inputs) {
   begin_frame(inputs);
   for (const size_t i : visible_objects(inputs)) {
     const int unit = scene().objects[i].unit;
-    if (unit != kNone) objects_of[unit].push_back(i);
+    if (unit != kNone && !scene().objects[i].holdout) objects_of[unit].push_back(i);
   }
   const gl::DebugGroup group("Occlusion queries");
   targets_.begin_occlusion();
@@ -211,6 +226,7 @@ void RasterStage::run(const FrameInputs& inputs, GBuffer& out) {
   out.resize(inputs.width, inputs.height);
   if (inputs.region.pixels() == 0) return;
   impl_->context->run([&] { impl_->passes->run(inputs, out); });
+  punch_holdouts(inputs, out);
 }
 
 std::vector<uint64_t> RasterStage::occlusion_areas(const FrameInputs& inputs) {

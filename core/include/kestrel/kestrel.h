@@ -215,6 +215,15 @@ KESTREL_API void kestrelDefaultLight(KestrelLight* light);
 KESTREL_API KestrelError kestrelSetLight(KestrelScene scene, uint64_t id,
                                          const KestrelLight* light);
 
+/* Kinds of rays, as bits. */
+typedef enum KestrelRays {
+  KESTREL_RAYS_CAMERA = 1, /* rasterised pictures and primary rays, also where they go on straight
+                              through alpha */
+  KESTREL_RAYS_SHADOW = 2,
+  KESTREL_RAYS_REFLECTION = 4,
+  KESTREL_RAYS_REFRACTION = 8
+} KestrelRays;
+
 typedef struct KestrelObject {
   const char* name;
   uint64_t mesh;
@@ -222,6 +231,8 @@ typedef struct KestrelObject {
   size_t material_count;
   float world_from_object[12];
   const char* unit; /* objects of one unit are selected together; NULL: its own name */
+  uint32_t hidden_from; /* KestrelRays that do not meet the object; 0: all meet it */
+  bool holdout;         /* where the camera sees it, the picture is black with an alpha of 0 */
 } KestrelObject;
 
 /* An object whose mesh has no triangles, or whose matrix has no inverse (a scale of zero), is not

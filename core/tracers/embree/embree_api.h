@@ -29,9 +29,9 @@ struct ValidLanes {
   }
 };
 
-/// Fills one ray of a packet; filter functions see its `id`.
+/// Fills one ray of a packet; filter functions see its `id`. `kind`: one of RayBits.
 inline void set_ray(RayPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
-                    float t_near, float t_far, size_t id) {
+                    float t_near, float t_far, unsigned kind, size_t id) {
   rays.org_x[lane] = origin.x;
   rays.org_y[lane] = origin.y;
   rays.org_z[lane] = origin.z;
@@ -41,15 +41,15 @@ inline void set_ray(RayPacket& rays, size_t lane, const vec3& origin, const vec3
   rays.tnear[lane] = t_near;
   rays.tfar[lane] = t_far;
   rays.time[lane] = 0.0f;
-  rays.mask[lane] = ~0u;
+  rays.mask[lane] = kind;
   rays.id[lane] = static_cast<unsigned>(id);
   rays.flags[lane] = 0;
 }
 
 /// The same for a ray that is to find the nearest hit: none yet.
 inline void set_ray(RayHitPacket& rays, size_t lane, const vec3& origin, const vec3& direction,
-                    float t_near, float t_far) {
-  set_ray(rays.ray, lane, origin, direction, t_near, t_far, lane);
+                    float t_near, float t_far, unsigned kind) {
+  set_ray(rays.ray, lane, origin, direction, t_near, t_far, kind, lane);
   rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
   rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
 }

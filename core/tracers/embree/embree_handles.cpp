@@ -20,6 +20,11 @@ DeviceHandle new_device() {
          static_cast<int>(rtcGetDeviceError(nullptr)));
   }
   rtcSetDeviceErrorFunction(device, report_error, nullptr);
+  if (!rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED)) {
+    log::warning_once(
+        "This Embree was built without EMBREE_RAY_MASK: objects that should be hidden from some "
+        "rays are seen by all. Use an Embree that has it.");
+  }
   return DeviceHandle(device);
 }
 

@@ -14,15 +14,6 @@ namespace {
 constexpr int kPacketWidth = 4;
 constexpr int kPacketHeight = embree::kPacket / kPacketWidth;
 
-void store_miss(const Scene& scene, const CameraRay& ray, size_t i, GBuffer& out) {
-  out.position[i] = out.normal[i] = out.normal_geometric[i] = vec3(0.0f);
-  out.emission[i] = out.ambient[i] = out.optical[i] = vec3(0.0f);
-  out.diffuse[i] = out.specular[i] = vec4(0.0f);
-  out.depth[i] = 0.0f;
-  out.object[i] = out.material[i] = 0;
-  out.lighting[i] = sample_world(scene, ray.direction);
-}
-
 void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& hit, Surface s,
                size_t i, GBuffer& out) {
   out.position[i] = s.position;
@@ -43,6 +34,7 @@ void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& h
 }
 
 void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, GBuffer& out) {
+  const Scene& scene = rt.scene();
   alignas(64) int valid[embree::kPacket];
   alignas(64) embree::RayHitPacket packet;
   CameraRay rays[embree::kPacket];
@@ -50,7 +42,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
     valid[lane] = x < out.width && y < out.height ? -1 : 0;
     const CameraRay& r = rays[lane] = camera.ray(x, y);
-    embree::set_ray(packet, lane, r.origin, r.direction, r.t_near, r.t_far);
+    embree::set_ray(packet, lane, r.origin, r.direction, r.t_near, r.t_far, kCameraRays);
   }
   embree::Query query;
   embree::intersect(rt.handle(), query, valid, packet);
@@ -60,12 +52,15 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     if (valid[lane] == 0) continue;
     const int x = x0 + lane % kPacketWidth, y = y0 + lane / kPacketWidth;
     const size_t i = static_cast<size_t>(y) * static_cast<size_t>(out.width) + x;
-    if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
-      store_miss(rt.scene(), rays[lane], i, out);
+    const bool missed = packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID;
+    const bool holdout = !missed && scene.objects[met.hits[next].object].holdout;
+    if (scene.has_holdouts) out.holdout[i] = holdout;
+    if (missed || holdout) {
+      out.set_nothing(i, missed ? sample_world(scene, rays[lane].direction) : vec3(0.0f));
     } else {
-      store_hit(rt.scene(), camera, met.hits[next], met.surfaces[next], i, out);
-      ++next;
+      store_hit(scene, camera, met.hits[next], met.surfaces[next], i, out);
     }
+    if (!missed) ++next;
   }
 }
 
@@ -74,6 +69,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
 uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
   const Region& region = inputs.region;
   out.resize(region.width, region.height);
+  out.holdout.resize(inputs.scene.has_holdouts ? region.pixels() : 0);
   const CameraRays camera(inputs);
   for_tiles(region, [&](const Region& tile) {
     const int x0 = tile.x - region.x, y0 = tile.y - region.y;

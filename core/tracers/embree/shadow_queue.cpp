@@ -9,7 +9,8 @@ void ShadowQueue::push(const vec3& origin, const vec3& direction, float distance
                        const Task& task) {
   const size_t lane = tasks_.size() % embree::kPacket;
   if (lane == 0) packets_.emplace_back();
-  embree::set_ray(packets_.back(), lane, origin, direction, 0.0f, distance, tasks_.size());
+  embree::set_ray(packets_.back(), lane, origin, direction, 0.0f, distance, kShadowRays,
+                  tasks_.size());
   tasks_.push_back(task);
 }
 

@@ -135,7 +135,7 @@ void TileTracer::trace_primary_shadows() {
 
 void TileTracer::start_paths() {
   for (const Pixel& p : pixels_) {
-    const Path eye{{}, -p.to_viewer, vec3(1.0f), 1.0f, p.index, 0, false};
+    const Path eye{{}, -p.to_viewer, vec3(1.0f), 1.0f, p.index, 0, kCameraRays, false};
     spawn(eye, p.surface, p.entering, camera_.distance(p.surface.position), 1.0f, 1.0f,
           p.reflectivity, p.transparency);
   }
@@ -154,12 +154,13 @@ void TileTracer::take_next_paths() {
 void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, float distance,
                        float weight_reflection, float weight_refraction, float reflectivity,
                        float transparency) {
-  const auto emit = [&](const vec3& direction, const vec3& tint, float importance, bool reflected) {
+  const auto emit = [&](const vec3& direction, const vec3& tint, float importance, uint8_t kind,
+                        bool reflected) {
     const float side = glm::dot(direction, facing.normal_geometric) < 0.0f ? -1.0f : 1.0f;
     (reflected ? next_reflected_ : next_refracted_)
         .push_back({leave_surface(facing.position, side * facing.normal_geometric, distance),
                     direction, from.throughput * tint, importance, from.pixel,
-                    static_cast<uint8_t>(from.depth + 1),
+                    static_cast<uint8_t>(from.depth + 1), kind,
                     from.depth == 0 ? reflected : from.reflected});
     count(unit_of(from.pixel), reflected ? rays_.reflection : rays_.refraction);
   };
@@ -167,14 +168,15 @@ void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, f
   const float reflection_importance = from.importance * reflectivity;
   if (reflectivity > 0.0f && reflection_importance > cutoff) {
     emit(reflect_outward(from.direction, facing.normal, facing.normal_geometric),
-         weight_reflection * facing.reflection_color, reflection_importance, true);
+         weight_reflection * facing.reflection_color, reflection_importance, kReflectionRays, true);
   }
   const float refraction_importance = from.importance * transparency;
   if (transparency > 0.0f && refraction_importance > cutoff) {
     const float outside = scene_.settings.environment_ior, inside = facing.optical.y;
     const float eta = entering ? outside / inside : inside / outside;
+    const uint8_t kind = inside == outside ? from.kind : kRefractionRays;
     emit(refract_or_reflect(from.direction, facing.normal, eta),
-         weight_refraction * facing.transmission_color, refraction_importance, false);
+         weight_refraction * facing.transmission_color, refraction_importance, kind, false);
   }
 }
 
@@ -183,7 +185,7 @@ void TileTracer::trace_depth() {
   hits_.resize((paths_.size() + kPacket - 1) / kPacket);
   for (size_t i = 0; i < paths_.size(); ++i) {
     embree::set_ray(hits_[i / kPacket], i % kPacket, paths_[i].origin, paths_[i].direction, 0.0f,
-                    INFINITY);
+                    INFINITY, paths_[i].kind);
   }
   const auto begin = std::chrono::steady_clock::now();
   embree::Query query;
@@ -206,12 +208,23 @@ void TileTracer::shade_packet(size_t first, const embree::RayHitPacket& packet) 
   size_t next = 0;
   for (size_t lane = 0; lane < count; ++lane) {
     const Path& path = paths_[first + lane];
-    if (packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
+    const bool missed = packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID;
+    if (leaves_hole(path, missed, missed ? kNone : met.hits[next].object)) {
+      effects_.clear[path.pixel] += glm::dot(path.throughput, vec3(1.0f / 3.0f));
+    } else if (missed) {
       sum_of(path.pixel, path.reflected) += path.throughput * sample_world(scene_, path.direction);
     } else {
-      shade_hit(path, met.surfaces[next++], packet.ray.tfar[lane]);
+      shade_hit(path, met.surfaces[next], packet.ray.tfar[lane]);
     }
+    if (!missed) ++next;
   }
+}
+
+/// Whether a path that comes straight from the camera sees nothing: no world on a transparent
+/// film, or a holdout.
+bool TileTracer::leaves_hole(const Path& path, bool missed, int object) const {
+  if (path.kind != kCameraRays) return false;
+  return missed ? scene_.settings.film_transparent : scene_.objects[object].holdout;
 }
 
 /// `distance`: that the ray travelled, metres.

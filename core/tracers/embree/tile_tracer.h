@@ -37,6 +37,7 @@ class TileTracer {
     float importance;  // product of the reflectivities and transparencies along it
     uint32_t pixel;    // in the picture
     uint8_t depth;     // 1: from the G-buffer
+    uint8_t kind;      // one of RayBits
     bool reflected;    // goes to M, else to R
   };
   /// Where a path met a surface whose own light shows.
@@ -66,6 +67,7 @@ class TileTracer {
   void start_paths();
   void trace_depth();
   void shade_packet(size_t first, const embree::RayHitPacket& packet);
+  bool leaves_hole(const Path& path, bool missed, int object) const;
   void shade_hit(const Path& path, Surface surface, float distance);
   void light_hits();
   void take_next_paths();
