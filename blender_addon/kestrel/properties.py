@@ -8,6 +8,7 @@ from bpy.props import (BoolProperty, EnumProperty, FloatProperty, FloatVectorPro
 
 from . import passes
 from .native import loader
+from .sync.settings import BLENDERS_OWN
 
 ABBREVIATIONS = {"ior": "IOR"}
 # What the artist reads of a choice: (label, description). The table knows its identifiers.
@@ -76,7 +77,7 @@ def group(name, annotations):
 
 def table_group(name, scope, **more):
     rows = {row["name"]: table_property(row) for row in loader.parameter_table()
-            if row["scope"] == scope}
+            if row["scope"] == scope and row["name"] not in BLENDERS_OWN}
     return group(name, {**rows, **more})
 
 

@@ -34,7 +34,7 @@ struct ObjectInput {
   uint64_t mesh = 0;
   std::vector<uint64_t> materials;  // by slot; 0: the default grey
   mat4x3 world_from_object{1.0f};
-  std::string unit;  // empty: its own name
+  std::string unit;         // empty: its own name
   uint8_t hidden_from = 0;  // RayBits
   bool holdout = false;
 };

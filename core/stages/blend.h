@@ -31,8 +31,9 @@ inline BlendWeights blend_weights(float reflectivity, float transparency) {
 class BlendStage {
  public:
   /// Combined: linear RGB, premultiplied by alpha, which is 1 but for holdouts and, on a
-  /// transparent film, where the camera sees the world, straight through surfaces too. Effects that were not traced leave the lighting as it is:
-  /// an untraced reflection or refraction counts as lighting in its place.
+  /// transparent film, where the camera sees the world, straight through surfaces too. Effects that
+  /// were not traced leave the lighting as it is: an untraced reflection or refraction counts as
+  /// lighting in its place.
   void run(const FrameInputs& inputs, const GBuffer& gbuffer, const Selection& selection,
            const EffectBuffers& effects, Plane<vec4>& combined);
 };

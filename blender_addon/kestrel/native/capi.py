@@ -24,6 +24,7 @@ ALPHA_OPAQUE, ALPHA_MASK, ALPHA_BLEND = range(3)
 LIGHT_DIRECTIONAL, LIGHT_POINT, LIGHT_SPOT = range(3)
 KIND_MESH, KIND_TEXTURE, KIND_MATERIAL, KIND_LIGHT, KIND_OBJECT = range(5)
 PERSPECTIVE, ORTHOGRAPHIC = range(2)
+RAYS_CAMERA, RAYS_SHADOW, RAYS_REFLECTION, RAYS_REFRACTION = 1, 2, 4, 8
 WORLD_COLOR, WORLD_EQUIRECTANGULAR, WORLD_CUBE = range(3)
 
 float_p = POINTER(c_float)
@@ -115,6 +116,8 @@ class Object(Structure):
         ("material_count", c_size_t),
         ("world_from_object", c_float * 12),
         ("unit", c_char_p),
+        ("hidden_from", c_uint32),
+        ("holdout", c_bool),
     ]
 
 
@@ -355,11 +358,12 @@ class Scene:
     def set_light(self, ident, light):
         self.library.check(self.c.kestrelSetLight(self.handle, ident, byref(light)))
 
-    def set_object(self, ident, name, unit, mesh, materials, world_from_object):
-        """`materials` are ids by slot, `world_from_object` 12 floats, column by column."""
+    def set_object(self, ident, name, unit, mesh, materials, visibility, world_from_object):
+        """`materials` are ids by slot, `visibility` the RAYS_… that do not meet it and whether it is
+        a holdout, `world_from_object` 12 floats, column by column."""
         slots = (c_uint64 * len(materials))(*materials)
         item = Object(encode(name), mesh, slots, len(materials),
-                      (c_float * 12)(*world_from_object), encode(unit))
+                      (c_float * 12)(*world_from_object), encode(unit), *visibility)
         self.library.check(self.c.kestrelSetObject(self.handle, ident, byref(item)))
 
     def set_object_transform(self, ident, world_from_object):

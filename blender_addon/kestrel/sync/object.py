@@ -14,6 +14,7 @@ from .light import sync_light
 from .material import sync_material
 from .mesh import GEOMETRY, sync_mesh
 from .settings import as_text, rows
+from .visibility import visibility
 
 # Drawn by other engines and not by Kestrel.
 UNSUPPORTED = {"POINTCLOUD": "point clouds", "VOLUME": "volumes",
@@ -34,12 +35,14 @@ class Objects:
         self.export = export
         self.scene = depsgraph.scene_eval
         self.for_viewport = depsgraph.mode == "VIEWPORT"
-        self.override = depsgraph.view_layer_eval.material_override
+        self.view_layer = depsgraph.view_layer_eval
+        self.override = self.view_layer.material_override
         self.shown = shown
         self.settings = rows("object")
         self.units = set()  # whose settings are set
         self.keys = {}      # original object: its key
         self.shapes = {}    # (object key, address of its data): what shape() says
+        self.visibility = {}  # (original, original owner): what visibility() says
 
     def key_of(self, original):
         key = self.keys.get(original)
@@ -70,15 +73,16 @@ class Objects:
         elif obj.type in GEOMETRY or obj.type == "CURVES":
             for part, *shape in self.shape(obj, original, show_strands):
                 if part or show_self:
-                    self.add_geometry(owner, key + part, *shape, columns(matrix))
+                    self.add_geometry(owner, key + part, *shape, self.visibility_of(obj, owner),
+                                      columns(matrix))
         elif obj.type in UNSUPPORTED:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
 
-    def add_geometry(self, owner, key, name, mesh, materials, matrix):
+    def add_geometry(self, owner, key, name, mesh, materials, visible, matrix):
         unit = owner.name_full
         ident = self.export.new_id(capi.KIND_OBJECT, key)
-        self.export.put_object(ident, (name, unit, mesh, materials), matrix)
+        self.export.put_object(ident, (name, unit, mesh, materials, visible), matrix)
         if unit not in self.units:
             self.units.add(unit)
             self.unit_settings(ident, unit, owner)
@@ -101,6 +105,13 @@ class Objects:
                     parts.append((b"/hair/" + capi.encode(name), name, mesh,
                                   slots[min(slot, len(slots) - 1):][:1]))
             found = self.shapes[key] = tuple(part for part in parts if part[2])
+        return found
+
+    def visibility_of(self, obj, owner):
+        key = (obj.original, owner.original)
+        found = self.visibility.get(key)
+        if found is None:
+            found = self.visibility[key] = visibility(self.export, obj, owner, self.view_layer)
         return found
 
     def slots(self, obj):

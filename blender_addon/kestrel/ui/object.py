@@ -3,7 +3,7 @@
 
 import bpy
 
-from .common import TablePanel
+from .common import KestrelPanel, TablePanel
 
 
 class KESTREL_OBJECT_PT_tracing(TablePanel, bpy.types.Panel):
@@ -26,6 +26,23 @@ class KESTREL_OBJECT_PT_tracing(TablePanel, bpy.types.Panel):
         return context.object is not None and context.object.type not in {"LIGHT", "CAMERA"}
 
 
+class KESTREL_OBJECT_PT_ray_visibility(KestrelPanel, bpy.types.Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+    shown = KESTREL_OBJECT_PT_tracing.shown
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        layout.use_property_split = True
+        column = layout.column()
+        column.prop(obj, "visible_camera", text="Camera")
+        column.prop(obj, "visible_shadow", text="Shadow")
+        column.prop(obj, "visible_glossy", text="Glossy")
+        column.prop(obj, "visible_transmission", text="Transmission")
+
+
 CLASSES = (
     KESTREL_OBJECT_PT_tracing,
+    KESTREL_OBJECT_PT_ray_visibility,
 )

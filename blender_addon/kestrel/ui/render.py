@@ -114,12 +114,10 @@ class KESTREL_RENDER_PT_simplify_render(SimplifyPanel, bpy.types.Panel):
              ("simplify_child_particles_render", "Max Child Particles"))
 
 
-class KESTREL_RENDER_PT_film(KestrelPanel, bpy.types.Panel):
+class KESTREL_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, _context):
-        pass
+    names = (("film_transparent", "Transparent"),)
 
 
 class KESTREL_RENDER_PT_film_pixel_filter(TablePanel, bpy.types.Panel):

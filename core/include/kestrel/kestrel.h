@@ -230,7 +230,7 @@ typedef struct KestrelObject {
   const uint64_t* materials; /* by slot; 0 entries and missing slots: the default grey */
   size_t material_count;
   float world_from_object[12];
-  const char* unit; /* objects of one unit are selected together; NULL: its own name */
+  const char* unit;     /* objects of one unit are selected together; NULL: its own name */
   uint32_t hidden_from; /* KestrelRays that do not meet the object; 0: all meet it */
   bool holdout;         /* where the camera sees it, the picture is black with an alpha of 0 */
 } KestrelObject;

@@ -174,7 +174,7 @@ void TileTracer::spawn(const Path& from, const Surface& facing, bool entering, f
   if (transparency > 0.0f && refraction_importance > cutoff) {
     const float outside = scene_.settings.environment_ior, inside = facing.optical.y;
     const float eta = entering ? outside / inside : inside / outside;
-    const uint8_t kind = inside == outside ? from.kind : kRefractionRays;
+    const uint8_t kind = inside == outside ? from.kind : uint8_t{kRefractionRays};
     emit(refract_or_reflect(from.direction, facing.normal, eta),
          weight_refraction * facing.transmission_color, refraction_importance, kind, false);
   }
