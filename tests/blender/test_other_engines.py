@@ -9,6 +9,7 @@ import addon_utils
 import bpy
 import numpy as np
 from kestrel.native import loader
+from kestrel.sync.settings import BLENDERS_OWN
 from support import SceneTest, diffuse, keep, read_planes, rgba, run_blender
 
 FAULTS = ("Traceback", "Error:", "kestrel: error", "kestrel: warning")
@@ -75,6 +76,8 @@ class OtherEngineTest(SceneTest):
         scene.render.engine = "KESTREL"
         owners = {"scene": scene, "object": bpy.data.objects["Cube"]}
         for row in loader.parameter_table():
+            if row["name"] in BLENDERS_OWN:
+                continue
             value = getattr(owners[row["scope"]].kestrel, row["name"])
             if row["type"] in ("int", "float"):
                 self.assertAlmostEqual(value, float(row["default"]), 5, row["name"])

@@ -63,7 +63,7 @@ class RayVisibilityTest(SceneTest):
         self.box.is_holdout = True
         picture = self.assert_like_cycles()
         hole = picture[..., 3] == 0.0
-        self.assertGreater(hole.mean(), 0.03)
+        self.assertGreater(hole.mean(), 0.01)
         self.assert_color(picture[hole], 0.0)
 
     def test_collection_holdout_and_indirect_only(self):

@@ -99,6 +99,19 @@ TEST(SceneCamera, PathGoesThroughItsKeysAtTheirTimes) {
   }
 }
 
+TEST(SceneObjects, VisibilityIsThatOfEveryInstance) {
+  const auto scene = read(R"("meshes": [{"name": "m", "primitive": "cube"}], "objects": [
+    {"mesh": "m", "hidden_from": ["camera", "reflection"], "holdout": true,
+     "instances": [[0, 0, 0], [1, 0, 0]]}, {"mesh": "m"}])");
+  ASSERT_EQ(scene.objects.size(), 3u);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(scene.objects[i].hidden_from, KESTREL_RAYS_CAMERA | KESTREL_RAYS_REFLECTION);
+    EXPECT_TRUE(scene.objects[i].holdout);
+  }
+  EXPECT_EQ(scene.objects[2].hidden_from, 0u);
+  EXPECT_FALSE(scene.objects[2].holdout);
+}
+
 TEST(SceneCamera, PathIsSmoothAtItsKeys) {
   const auto camera = read_camera(R"({"fov": 50, "path": [
     {"time": 0, "position": [0, 0, 0], "look_at": [0, 9, 0]},

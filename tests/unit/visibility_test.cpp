@@ -210,7 +210,6 @@ TEST_P(Visibility, TransparentFilm) {
   expect(-0.25f, {0.25f, 0, 0, 0.25f});
   expect(0.25f, {kWorld, 1});  // as Cycles does without Transparent Glass
   expect(0.75f, vec4(0.0f));
-  EXPECT_NEAR(value("Lighting", 0.0f, 0.0f), 0.0f, 1e-6f);
 }
 
 TEST_P(Visibility, EdgesOnATransparentFilmArePremultiplied) {
