@@ -25,10 +25,11 @@ def _forget_modules():
 
 _forget_modules()
 
-from . import engine, log, preferences, properties, rivals, ui  # noqa: E402
+from . import (engine, log, operators, preferences, properties, rivals, translations,  # noqa: E402
+               ui)
 from .native import loader  # noqa: E402
 
-MODULES = (log, properties, preferences, engine, ui)
+MODULES = (log, translations, properties, operators, preferences, engine, ui)
 IDLE_MODULES = (rivals,)  # of one that stands back for another Kestrel
 
 _registered = []

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Messages: the library's and the add-on's own, on the terminal and collected for the artist."""
 
+import collections
 import contextlib
 import os
 import sys
@@ -10,13 +11,16 @@ import traceback
 from .native import capi, loader
 
 LEVELS = ("debug", "info", "warning", "error")
+REMEMBERED = 200  # messages
 
 _lock = threading.Lock()
 _collectors = []
+_recent = collections.deque(maxlen=REMEMBERED)
 _callback = None  # ctypes does not keep it alive
 
 
 def _write(level, text):
+    _recent.append(f"{level}: {text}")
     print(f"kestrel: {level}: {text}", flush=True, file=sys.stdout)
 
 
@@ -29,6 +33,11 @@ def warning(text):
 
 def error(text):
     _write("error", text)
+
+
+def recent():
+    """The newest messages of this session, oldest first, as they stand on the terminal."""
+    return list(_recent)
 
 
 @contextlib.contextmanager
@@ -77,3 +86,4 @@ def unregister():
     if library is not None and _callback is not None:
         library.set_log_callback(None)
     _callback = None
+    _recent.clear()

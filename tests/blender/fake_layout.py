@@ -7,6 +7,7 @@ import bpy
 
 # Arguments of Blender's own templates that name a property of the first one.
 PROPERTY_TEMPLATES = ("template_ID",)
+BLENDERS = (bpy.types.Panel, bpy.types.AddonPreferences)  # classes that Blender alone can make
 
 
 class Layout:
@@ -67,7 +68,7 @@ class Layout:
 
 def draw(panel, context):
     """Call everything of a panel class that draws; returns the words that it shows."""
-    bases = tuple(base for base in panel.__bases__ if base is not bpy.types.Panel)
+    bases = tuple(base for base in panel.__bases__ if base not in BLENDERS)
     own = {name: value for name, value in vars(panel).items()
            if name not in ("__dict__", "__weakref__", "bl_rna", "__slots__")}
     made = type(panel.__name__, bases, own)()

@@ -9,6 +9,7 @@ import addon_utils
 import bpy
 from kestrel import properties, session
 from kestrel.native import loader
+from kestrel.sync.settings import BLENDERS_OWN
 from support import SceneTest, diffuse
 
 TIMES = 20
@@ -64,13 +65,23 @@ def handlers():
             if isinstance(getattr(bpy.app.handlers, name), list)}
 
 
+def has_translations():
+    """Whether Kestrel's words are among Blender's, which takes an add-on's only once."""
+    try:
+        bpy.app.translations.register("kestrel", {})
+    except ValueError:
+        return True
+    bpy.app.translations.unregister("kestrel")
+    return False
+
+
 def state():
     """Everything that registering changes."""
     return {"types": registered_types(), "classes": subclasses(), "menus": menu_entries(),
             "properties": properties_of_types(), "engines": engines_of_panels(),
             "handlers": handlers(), "sessions": session.count(),
             "threads": sorted(thread.name for thread in threading.enumerate()),
-            "operators": set(dir(bpy.ops.kestrel))}
+            "operators": set(dir(bpy.ops.kestrel)), "translations": has_translations()}
 
 
 def difference(found, wanted):
@@ -111,6 +122,9 @@ class EnableTest(SceneTest):
         self.assertEqual([name for name in disabled["types"] if "KESTREL" in name.upper()], [])
         self.assertEqual([n for n, e in disabled["engines"].items() if "KESTREL" in e], [])
         self.assertNotIn("kestrel", set().union(*disabled["properties"].values()))
+        self.assertEqual((enabled["translations"], disabled["translations"]), (True, False))
+        self.assertIn("copy_system_report", enabled["operators"])
+        self.assertEqual(disabled["operators"], set())
         self.assertNotIn("kestrel", repr(disabled["handlers"]) + repr(disabled["menus"]))
         memory, threads = [], []
         for _ in range(TIMES):
@@ -141,6 +155,9 @@ class PropertiesTest(SceneTest):
         table = loader.parameter_table()
         self.assertGreater(len(table), 10)
         for row in table:
+            if row["name"] in BLENDERS_OWN:
+                self.assertNotIn(row["name"], self.owner(row).bl_rna.properties)
+                continue
             with self.subTest(row["name"]):
                 made = self.owner(row).bl_rna.properties[row["name"]]
                 self.assertEqual(made.description, row["help"])

@@ -25,7 +25,9 @@ def kestrel_properties():
                 yield f"{kind}.{prop.identifier}", prop
 
 
-class PanelTest(SceneTest):
+class PanelCase(SceneTest):
+    """Draws panels in every context."""
+
     def context(self, obj=None, **more):
         """What a Properties editor knows, with `obj` active."""
         data = obj.data if obj else None
@@ -73,6 +75,8 @@ class PanelTest(SceneTest):
                     found.setdefault(panel, set()).update(fake_layout.draw(panel, context))
         return found
 
+
+class PanelTest(PanelCase):
     def test_every_panel_draws_in_every_context(self):
         found = self.drawn(self.contexts())
         panels = {cls for cls in ui.CLASSES if issubclass(cls, bpy.types.Panel)}

@@ -3,8 +3,9 @@
 
 from unittest import mock
 
+import addon_utils
 import bpy
-from kestrel import ui
+from kestrel import log, preferences, ui
 from kestrel.native import loader
 from viewport_support import ViewportTest
 
@@ -16,9 +17,9 @@ class PanelTest(ViewportTest):
     def setUp(self):
         super().setUp()
         self.drawn, self.faults = set(), []
-        for panel in ui.CLASSES:
+        for panel in (*ui.CLASSES, preferences.KestrelPreferences):
             for name in METHODS:
-                if issubclass(panel, bpy.types.Panel) and hasattr(panel, name):
+                if not issubclass(panel, bpy.types.Operator) and hasattr(panel, name):
                     patch = mock.patch.object(panel, name, self.watched(panel, name))
                     patch.start()
                     self.addCleanup(patch.stop)
@@ -61,6 +62,32 @@ class PanelTest(ViewportTest):
                      "MATERIAL_PT_surface", "LIGHT_PT_light", "LIGHT_PT_beam_shape",
                      "WORLD_PT_surface", "VIEW_LAYER_PT_passes"):
             self.assertIn(f"KESTREL_{name}", self.drawn)
+
+    def test_report_log_and_preferences(self):
+        with bpy.context.temp_override(window=self.window, area=self.properties):
+            bpy.ops.kestrel.copy_system_report()
+        text = bpy.context.window_manager.clipboard
+        self.assertTrue(text.startswith("Kestrel system report"), text[:40])
+        self.assertIn("draws with ", text)
+        log.warning("something odd")
+        with bpy.context.temp_override(window=self.window, area=self.properties):
+            bpy.ops.screen.back_to_previous()
+        yield None
+        with bpy.context.temp_override(window=self.window):
+            bpy.ops.kestrel.open_log()
+        area = bpy.context.window_manager.windows[-1].screen.areas[0]
+        self.assertTrue(area.spaces.active.text.as_string().endswith("warning: something odd"))
+        self.close_newest_window()
+        addon_utils.modules()
+        with bpy.context.temp_override(window=self.window):
+            bpy.ops.preferences.addon_show(module="kestrel")
+        yield lambda: "KestrelPreferences" in self.drawn
+        self.close_newest_window()
+        self.assertEqual(self.faults, [])
+
+    def close_newest_window(self):
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[-1]):
+            bpy.ops.wm.window_close()
 
     def test_without_a_library(self):
         yield None

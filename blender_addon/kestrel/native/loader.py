@@ -32,7 +32,7 @@ _library = None
 _error = ""
 _table = None
 _plugin_loads = None
-_device_text = None
+_device_info = None
 
 
 def library_path():
@@ -152,14 +152,19 @@ def parameter_table():
     return _table
 
 
+def device_info():
+    """What the library says of this machine, as a dict; asked for once."""
+    global _device_info
+    if _device_info is None:
+        _device_info = json.loads(require().device_info())
+    return _device_info
+
+
 def device_text():
-    """The OpenGL device that the library draws with, or why it has none; asked for once."""
-    global _device_text
-    if _device_text is None:
-        info = json.loads(require().device_info())
-        gl = info.get("gl") or {}
-        _device_text = gl.get("renderer") or f"No OpenGL: {info.get('gl_error', '')}"
-    return _device_text
+    """The OpenGL device that the library draws with, or why it has none."""
+    info = device_info()
+    gl = info.get("gl") or {}
+    return gl.get("renderer") or f"No OpenGL: {info.get('gl_error', '')}"
 
 
 def image_plugin_available():
