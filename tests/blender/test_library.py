@@ -12,7 +12,8 @@ from support import ADDON, run_blender
 
 HEADER = (ADDON.parent / "core/include/kestrel/kestrel.h").read_text()
 CODE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
-TYPES = {"float": "c_float", "bool": "c_bool", "int32_t": "c_int", "uint64_t": "c_ulong",
+TYPES = {"float": "c_float", "bool": "c_bool", "int32_t": "c_int", "uint32_t": "c_uint",
+         "uint64_t": "c_ulong",
          "size_t": "c_ulong"}
 
 
