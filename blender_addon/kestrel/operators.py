@@ -9,10 +9,10 @@ LOG_NAME = "Kestrel Log"
 
 
 class KESTREL_OT_copy_system_report(bpy.types.Operator):
-    """Copy to the clipboard what belongs into a report of a fault: versions, devices, this scene's \
-settings and the last messages"""
     bl_idname = "kestrel.copy_system_report"
     bl_label = "Copy Kestrel System Report"
+    bl_description = ("Copy to the clipboard what belongs into a report of a fault: versions, "
+                      "devices, this scene's settings and the last messages")
 
     def execute(self, context):
         context.window_manager.clipboard = report.text(context.scene)
@@ -21,9 +21,9 @@ settings and the last messages"""
 
 
 class KESTREL_OT_open_log(bpy.types.Operator):
-    """Show Kestrel's last messages in a text, in a window of its own"""
     bl_idname = "kestrel.open_log"
     bl_label = "Open Kestrel Log"
+    bl_description = "Show Kestrel's last messages in a text, in a window of its own"
 
     def execute(self, context):
         text = bpy.data.texts.get(LOG_NAME) or bpy.data.texts.new(LOG_NAME)

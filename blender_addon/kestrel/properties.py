@@ -13,7 +13,8 @@ from .sync.settings import BLENDERS_OWN
 ABBREVIATIONS = {"ior": "IOR"}
 # What the artist reads of a choice: (label, description). The table knows its identifiers.
 ITEMS = {
-    ("selection", "graph"): ("Most Relevant", "Those that matter most, as many as the budget allows"),
+    ("selection", "graph"): ("Most Relevant", "Those that matter most, as many as the budget "
+                                               "allows"),
     ("selection", "all"): ("All", "Every object in view, however long it takes"),
     ("selection", "none"): ("None", "No object: rasterised shading alone, the fastest"),
     ("shading_model", "blinn_phong"): ("Blinn-Phong", "Diffuse reflection and a highlight"),

@@ -42,7 +42,8 @@ def _settings_lines(scene):
             continue
         value = getattr(scene.kestrel, name)
         value = tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else value
-        yield f"  {name} = {value!r}" + ("" if scene.kestrel.is_property_set(name) else " (default)")
+        note = "" if scene.kestrel.is_property_set(name) else " (default)"
+        yield f"  {name} = {value!r}{note}"
 
 
 def text(scene):

@@ -13,8 +13,7 @@ from support import ADDON, run_blender
 HEADER = (ADDON.parent / "core/include/kestrel/kestrel.h").read_text()
 CODE = re.sub(r"/\*.*?\*/", "", HEADER, flags=re.S)
 TYPES = {"float": "c_float", "bool": "c_bool", "int32_t": "c_int", "uint32_t": "c_uint",
-         "uint64_t": "c_ulong",
-         "size_t": "c_ulong"}
+         "uint64_t": "c_ulong", "size_t": "c_ulong"}
 
 
 def struct_fields(name):
@@ -97,7 +96,7 @@ class LibraryTest(unittest.TestCase):
 class MissingLibraryTest(unittest.TestCase):
     """The add-on stays enabled and says what is wrong."""
 
-    SCRIPT = ("import bpy, kestrel; from kestrel.ui import render; from kestrel.native import loader; "
+    SCRIPT = ("import bpy; from kestrel.ui import render; from kestrel.native import loader; "
               "s = bpy.context.scene; s.render.engine = 'KESTREL'; "
               "print('PANEL', render.KESTREL_RENDER_PT_library.shown(None)); "
               "print('REASON', loader.error()); bpy.ops.render.render()")
