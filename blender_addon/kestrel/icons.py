@@ -13,6 +13,9 @@ from . import session, sync
 
 # 128 x 128 pixels in about a tenth of a second on two cores.
 SETTINGS = {"samples": "4", "max_depth": "6", "importance_cutoff": "0.05", "primary": "rays"}
+# Of the floor that icons without a background only mirror and refract: its nodes hide it from the
+# camera in Cycles.
+HIDDEN_FLOOR = "FloorHidden"
 
 _numbers = itertools.count(1)
 
@@ -26,4 +29,5 @@ def new_key(engine):
 
 def export(target, depsgraph, camera):
     """Send the preview scene; returns (width, height) as sync.export_depsgraph() does."""
+    target.unseen_material = HIDDEN_FLOOR
     return sync.export_depsgraph(target, depsgraph, camera, lambda _text: None, SETTINGS)

@@ -33,6 +33,7 @@ class Session:
     def __init__(self, library):
         self.scene = capi.Scene(library)
         self.renderer = capi.Renderer(self.scene)
+        self.unseen_material = ""   # the camera does not meet objects of this material
         self.sent = {}              # (kind, id): what was sent last
         self.sent_settings = set()  # units that were given settings
         self.warned = set()         # texts that were already said

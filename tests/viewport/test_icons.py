@@ -64,6 +64,8 @@ class IconTest(ViewportTest):
         self.assertEqual(session.count(), 0)
         center = icon(red)[48:80, 48:80].mean(axis=(0, 1))
         self.assertGreater(center[0], 2.5 * max(center[1], center[2]))
+        self.assertLess(icon(red)[:4, :4, 3].max(), 0.01)  # no floor, no background
+        self.assertGreater(center[3], 0.99)
         self.assertGreater(icon(lamp)[..., :3].max(), 0.1)
         sky = icon(world)[64, 64]
         self.assertGreater(sky[1], 2.0 * max(sky[0], sky[2]))
