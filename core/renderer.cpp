@@ -13,12 +13,15 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "frame/lens.h"
 #include "frame/region_loops.h"
 #include "frame/sampling.h"
 #include "frame/stats.h"
+#include "scene/motion.h"
 #include "scene/rt_scene.h"
 #include "stages/blend.h"
 #include "stages/heuristic.h"
+#include "stages/motion_vectors.h"
 #include "stages/raster.h"
 #include "stages/trace.h"
 #include "tracers/embree/embree_tracer.h"
@@ -78,8 +81,10 @@ struct Renderer::Impl {
   void render(const Progress& progress);
   void begin_film();
   void prepare();
+  void show_moment(int sample);
   bool use_raster();
   bool limited() const;
+  bool lens_open() const;
   bool whole_picture() const;
   void render_sample(int sample);
   void render_tiles(const FrameInputs& picture, int sample);
@@ -98,6 +103,7 @@ struct Renderer::Impl {
   PrimaryRays primary_rays{rt_scene};
   EmbreeTracer embree_tracer{rt_scene};
   HeuristicStage heuristic;
+  MotionVectors motion_vectors{rt_scene};
   TraceStage trace_stage{embree_tracer};
   BlendStage blend_stage;
   std::vector<std::string> passes;
@@ -105,6 +111,8 @@ struct Renderer::Impl {
 
   // The frame under way.
   std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Scene> moment;  // the scene while a sample is taken
+  bool moving = false;                  // every sample has a moment of its own
   int width = 0;
   int height = 0;
   tbb::enumerable_thread_specific<Workspace> workspaces;
@@ -195,9 +203,11 @@ void Renderer::Impl::begin_film() {
 
 void Renderer::Impl::render_sample(int sample) {
   const Settings& settings = scene->settings;
-  const FrameInputs inputs{*scene, width, height,
-                           subpixel_offset(settings, settings.first_sample + sample),
-                           settings.budget_ms / static_cast<float>(settings.samples)};
+  show_moment(sample);
+  FrameInputs inputs{*moment, width, height,
+                     subpixel_offset(settings, settings.first_sample + sample),
+                     settings.budget_ms / static_cast<float>(settings.samples)};
+  inputs.lens = {lens_open(), lens_position(settings.first_sample + sample), !raster};
   if (sample == 0 && !limited()) {
     // Nothing has to be seen for it: as if every object were visible.
     selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
@@ -234,6 +244,7 @@ void Renderer::Impl::render_tiles(const FrameInputs& picture, int sample) {
 void Renderer::Impl::render_region(const FrameInputs& inputs, int sample, Workspace& work) {
   rasterize(inputs, work);
   select(inputs, sample, work);
+  if (sample == 0 && film.has("Vector")) motion_vectors.run(inputs, work.gbuffer);
   trace(inputs, work);
   blend(inputs, work);
   film.add(inputs, sample, work.gbuffer, work.effects, work.combined);
@@ -250,18 +261,32 @@ bool Renderer::Impl::whole_picture() const {
   return limited() || raster;
 }
 
-/// Brings what the stages read up to date with the scene.
+/// Decides how the frame is made.
 void Renderer::Impl::prepare() {
   const Stopwatch watch(stats.stages.update);
-  rt_scene.update(scene);
-  if (use_raster()) {
-    if (!raster) raster = std::make_unique<RasterStage>(device->gl());
-    raster->update(scene);
-  } else {
+  moving = scene->settings.motion_blur && anything_moves(*scene);
+  if (!use_raster()) {
     raster.reset();
+  } else if (!raster) {
+    raster = std::make_unique<RasterStage>(device->gl());
   }
   stats.primary = raster ? "raster" : "rays";
   stats.samples = scene->settings.samples;
+}
+
+/// Brings what the stages read up to date with the scene as it is when a sample is taken.
+void Renderer::Impl::show_moment(int sample) {
+  if (sample > 0 && !moving) return;
+  const Stopwatch watch(stats.stages.update);
+  moment = moving ? scene_at(*scene, shutter_time(scene->settings.first_sample + sample)) : scene;
+  rt_scene.update(moment);
+  if (raster) raster->update(moment);
+}
+
+/// One sample cannot show what is out of focus: within a budget it keeps everything sharp.
+bool Renderer::Impl::lens_open() const {
+  const Settings& settings = scene->settings;
+  return has_aperture(scene->camera) && !(settings.samples == 1 && settings.budget_ms > 0.0f);
 }
 
 /// On a GPU rasterising is faster; where OpenGL itself runs on the processor, rays are.

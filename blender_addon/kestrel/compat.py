@@ -214,6 +214,16 @@ class CombinedWriter:
             self._layer.passes.foreach_set("rect", self._whole)
 
 
+# ---- cameras ---------------------------------------------------------------------------------
+
+def motion_blur_position(scene):
+    """Where in the time that the shutter is open the frame lies: START, CENTER or END."""
+    owner = scene.render  # 4.2 on
+    if not hasattr(owner, "motion_blur_position"):
+        owner = getattr(scene, "cycles", None)
+    return getattr(owner, "motion_blur_position", "CENTER")
+
+
 # ---- materials, lights -----------------------------------------------------------------------
 
 def node_input(node, *names):

@@ -15,6 +15,7 @@ import bpy
 from . import compat, icons, log, passes, session, sync
 from .native import capi
 from .progress import Memory, Progress, status_text
+from .sync import motion
 
 POLL_S = 0.02          # how often Escape is looked for
 TELL_EVERY_S = 0.1     # at most so often is the status bar written
@@ -136,9 +137,10 @@ class FinalRender:
         self._teller.tell(engine, "Reading the scene")
         with self._reporting(engine):
             target = session.acquire(self._key)
-            camera = camera_of(engine, depsgraph)
-            self._size = (icons.export(target, depsgraph, camera) if engine.is_preview else
-                          sync.export_depsgraph(target, depsgraph, camera, log.warning))
+            if engine.is_preview:
+                self._size = icons.export(target, depsgraph, camera_of(engine, depsgraph))
+            else:
+                self._size = motion.export_frame(engine, target, depsgraph, camera_of, log.warning)
             self._session = target
 
     def render(self, engine, depsgraph):

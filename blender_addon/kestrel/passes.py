@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SOCKET_TYPES = {"RGBA": "COLOR", "RGB": "COLOR", "XYZ": "VECTOR"}
+SOCKET_TYPES = {"RGBA": "COLOR", "RGB": "COLOR", "XYZ": "VECTOR", "XYZW": "VECTOR"}
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,8 @@ PASSES = (
     Pass("Depth", "Z", "Distance from the camera along its view", "use_pass_z"),
     Pass("Position", "XYZ", "Point of the surface in world space", "use_pass_position"),
     Pass("Normal", "XYZ", "Surface normal in world space, after normal maps", "use_pass_normal"),
+    Pass("Vector", "XYZW", "Pixels moved since the frame before, and until the next one; nothing "
+         "with motion blur", "use_pass_vector"),
     Pass("Emission", "RGB", "Light that the surface gives off", "use_pass_emit", "Emit"),
     Pass("Ambient", "RGB", "Share of the ambient light that the surface reflects"),
     Pass("Diffuse", "RGBA", "Diffuse colour; alpha is the surface's coverage"),

@@ -40,6 +40,7 @@ class Session:
         self.means = {}             # (kind of mean, texture, its content): mean colour
         self.values = {}            # name: settings, world and what else is no item
         self.shapes = {}            # mesh key: [(mesh id, slots), ...] of the last export
+        self.moving = set()         # ids of objects that were given a motion
         self.edits = 0              # how often anything was sent that is not as it was
         self._busy = threading.Lock()
 

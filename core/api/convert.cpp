@@ -12,6 +12,7 @@ namespace {
 
 /// Keeps every index of a corner and of a buffer's byte within what Embree and OpenGL count.
 constexpr size_t kMaxElements = size_t{1} << 29;
+constexpr size_t kMaxMotionSteps = 129;
 constexpr size_t kMaxSlots = size_t{kMaxMaterialSlot} + 1;
 
 /// The length of the UTF-8 sequence at `s`, 0 where there is none (RFC 3629).
@@ -66,6 +67,15 @@ vec4 vec4_from(const float v[4]) {
   return {v[0], v[1], v[2], v[3]};
 }
 
+/// Steps of a motion, checked.
+size_t motion_steps(size_t count) {
+  if (count < 2 || count > kMaxMotionSteps) {
+    fail(ErrorCode::invalid_argument, "A motion of {} steps is not supported. Use 2 to {}.", count,
+         kMaxMotionSteps);
+  }
+  return count;
+}
+
 }  // namespace
 
 std::string text_from(const char* text) {
@@ -96,6 +106,13 @@ MeshInput mesh_from(const KestrelMesh& mesh) {
   out.corner_uvs = optional_array(mesh.corner_uvs, 2 * corners);
   out.corner_tangents = optional_array(mesh.corner_tangents, 4 * corners);
   out.triangle_materials = optional_array(mesh.triangle_materials, mesh.triangle_count);
+  if (mesh.motion_count > 0) {
+    out.motion_count = motion_steps(mesh.motion_count);
+    out.motion_positions =
+        array(mesh.motion_positions, 3 * mesh.vertex_count * out.motion_count, "motion_positions");
+    out.motion_corner_normals =
+        optional_array(mesh.motion_corner_normals, 3 * corners * out.motion_count);
+  }
   return out;
 }
 
@@ -202,6 +219,28 @@ Camera camera_from(const KestrelCamera& camera) {
   out.top = camera.top;
   out.near_clip = camera.near_clip;
   out.far_clip = camera.far_clip;
+  out.aperture_radius = glm::max(camera.aperture_radius, 0.0f);
+  out.focus_distance = camera.focus_distance;
+  out.aperture_blades = camera.aperture_blades;
+  out.aperture_rotation = camera.aperture_rotation;
+  out.aperture_ratio = camera.aperture_ratio;
+  return out;
+}
+
+std::vector<mat4x3> matrices_from(const float* values, size_t count) {
+  std::vector<mat4x3> out;
+  if (count == 0) return out;
+  require(values, "world_from_object");
+  motion_steps(count);
+  for (size_t i = 0; i < count; ++i) out.push_back(matrix_from(values + 12 * i));
+  return out;
+}
+
+std::vector<Camera> cameras_from(const KestrelCamera* states, size_t count) {
+  require(states, "states");
+  motion_steps(count);
+  std::vector<Camera> out;
+  for (size_t i = 0; i < count; ++i) out.push_back(camera_from(states[i]));
   return out;
 }
 

@@ -22,7 +22,11 @@ MaterialInput material_from(const KestrelMaterial& material);
 LightInput light_from(const KestrelLight& light);
 ObjectInput object_from(const KestrelObject& object);
 mat4x3 matrix_from(const float values[12]);
+/// As many as a motion may have steps, or none.
+std::vector<mat4x3> matrices_from(const float* values, size_t count);
 Camera camera_from(const KestrelCamera& camera);
+/// As many as a motion may have steps.
+std::vector<Camera> cameras_from(const KestrelCamera* states, size_t count);
 WorldInput world_from(const KestrelWorld& world);
 ItemKind kind_from(KestrelKind kind);
 

@@ -134,6 +134,13 @@ KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
   });
 }
 
+KestrelError kestrelSetObjectMotion(KestrelScene scene, uint64_t id, const float* world_from_object,
+                                    size_t count) {
+  return edit_scene(scene, [&](SceneBuilder& builder) {
+    builder.set_object_motion(id, matrices_from(world_from_object, count));
+  });
+}
+
 KestrelError kestrelSetObjectSetting(KestrelScene scene, uint64_t id, const char* name,
                                      const char* value) {
   return edit_scene(scene, [&](SceneBuilder& builder) {
@@ -148,6 +155,12 @@ KestrelError kestrelRemove(KestrelScene scene, KestrelKind kind, uint64_t id) {
 KestrelError kestrelSetCamera(KestrelScene scene, const KestrelCamera* camera) {
   return edit_scene(scene, [&](SceneBuilder& builder) {
     builder.set_camera(camera_from(*require(camera, "camera")));
+  });
+}
+
+KestrelError kestrelSetCameraMotion(KestrelScene scene, const KestrelCamera* states, size_t count) {
+  return edit_scene(scene, [&](SceneBuilder& builder) {
+    builder.set_camera_motion(cameras_from(states, count));
   });
 }
 

@@ -23,6 +23,11 @@ KestrelCamera with_window(const CameraDescription& camera, const mat4x3& world_f
   out.top = center.y + half.y;
   out.near_clip = camera.near_clip;
   out.far_clip = camera.far_clip;
+  out.aperture_radius = camera.aperture_radius;
+  out.focus_distance = camera.focus_distance;
+  out.aperture_blades = camera.aperture_blades;
+  out.aperture_rotation = camera.aperture_rotation;
+  out.aperture_ratio = camera.aperture_ratio;
   for (int i = 0; i < 12; ++i) out.world_from_camera[i] = world_from_camera[i / 3][i % 3];
   return out;
 }

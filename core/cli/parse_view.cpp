@@ -31,6 +31,20 @@ void parse_field_of_view(const JsonNode& node, CameraDescription& camera) {
   }
 }
 
+void parse_aperture(const JsonNode& node, CameraDescription& camera) {
+  if (const auto v = node.find("aperture_radius")) {
+    camera.aperture_radius = v->number(0, kMaximumLength);
+    camera.focus_distance = node.require("focus_distance").number(1e-5, kMaximumLength);
+  }
+  if (const auto v = node.find("aperture_blades")) {
+    camera.aperture_blades = static_cast<int>(v->number(0, 64));
+  }
+  if (const auto v = node.find("aperture_rotation")) {
+    camera.aperture_rotation = glm::radians(v->number(-1e6, 1e6));
+  }
+  if (const auto v = node.find("aperture_ratio")) camera.aperture_ratio = v->number(0.01, 100.0);
+}
+
 mat4x3 parse_camera_matrix(const JsonNode& node) {
   const mat4x3 m = parse_matrix(node);
   const mat3 linear(m);
@@ -145,8 +159,26 @@ std::vector<std::string> light_keys(int type) {
 }  // namespace
 
 CameraDescription parse_camera(const JsonNode& node) {
-  node.expect_keys({"type", "fov", "fov_x", "fov_y", "scale", "shift_x", "shift_y", "position",
-                    "look_at", "up", "rotation", "matrix", "near", "far", "path"});
+  node.expect_keys({"type",
+                    "fov",
+                    "fov_x",
+                    "fov_y",
+                    "scale",
+                    "shift_x",
+                    "shift_y",
+                    "position",
+                    "look_at",
+                    "up",
+                    "rotation",
+                    "matrix",
+                    "near",
+                    "far",
+                    "path",
+                    "aperture_radius",
+                    "focus_distance",
+                    "aperture_blades",
+                    "aperture_rotation",
+                    "aperture_ratio"});
   CameraDescription camera;
   const auto type = node.find("type");
   const bool orthographic = type && type->choice({"perspective", "orthographic"}) == 1;
@@ -169,6 +201,7 @@ CameraDescription parse_camera(const JsonNode& node) {
   if (!(camera.near_clip < camera.far_clip)) {
     node.fail("'near' ({}) must be below 'far' ({})", camera.near_clip, camera.far_clip);
   }
+  parse_aperture(node, camera);
   camera.up = parse_vec3(node, "up", camera.up);
   if (glm::length(camera.up) < 1e-6f) node.require("up").fail("must not be zero");
   if (const auto path = node.find("path")) camera.path = parse_path(*path);

@@ -86,6 +86,11 @@ struct CameraDescription {
   vec2 shift{0.0f};     // in units of the fitted side, as Blender's
   float near_clip = 0.1f;
   float far_clip = 1000.0f;
+  float aperture_radius = 0.0f;  // metres
+  float focus_distance = 1.0f;   // metres
+  int aperture_blades = 0;
+  float aperture_rotation = 0.0f;  // radians
+  float aperture_ratio = 1.0f;
   mat4x3 world_from_camera{1.0f};
   vec3 up{0.0f, 0.0f, 1.0f};    // of the path
   std::vector<CameraKey> path;  // empty, or 2 and more at rising times

@@ -75,6 +75,7 @@ const std::vector<PassRow>& pass_rows() {
       {{"Shadow", "RGB"}, true, from_effects<&E::shadow>},
       {{"Reflection", "RGB"}, true, from_effects<&E::reflection>},
       {{"Refraction", "RGB"}, true, from_effects<&E::refraction>},
+      {{"Vector", "XYZW"}, false, from_gbuffer<&G::motion>},
   };
   return rows;
 }

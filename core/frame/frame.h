@@ -23,6 +23,13 @@ struct Region {
   size_t pixels() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };
 
+/// Through which point of the camera's aperture a sample looks.
+struct LensSample {
+  bool open = false;       // false: through its centre
+  vec2 at{0.5f};           // point of the unit square that stands for the aperture
+  bool per_pixel = false;  // every pixel another one: grain instead of many sharp pictures
+};
+
 /// What every stage needs to know of this frame. Stages work on the whole picture or, so that all
 /// their data stays in the processor's cache, on a tile of it.
 struct FrameInputs {
@@ -32,6 +39,7 @@ struct FrameInputs {
   vec2 subpixel{0.0f};                 // sample position, offset from the pixel's centre, in pixels
   float budget_ms = 0.0f;              // T for this sample: the frame's share; 0 means no limit
   Region region{0, 0, width, height};  // what is rendered now; the planes have its size
+  LensSample lens{};
 };
 
 /// Planes are written whole by whoever fills them, in parallel: new memory is left uninitialised,
@@ -72,9 +80,11 @@ struct GBuffer {
   Plane<uint32_t> object;       // scene object index + 1, 0 = nothing
   Plane<uint32_t> material;     // scene material index (0 also where nothing)
   Plane<vec3> lighting;         // P-buffer: L, lit without shadows, reflections, refractions
+  Plane<vec4> motion;           // pixels moved since the state before (XY) and until the one after
+                                // (ZW); of the first sample, where the pass is wanted
   Plane<uint8_t> holdout;       // 1: a holdout is in front, and so nothing; empty without holdouts
 
-  /// The planes of every frame; `holdout` stays as it is.
+  /// The planes of every frame; `motion` and `holdout` stay as they are.
   void resize(int new_width, int new_height);
 
   /// Makes a pixel show nothing, in front of this radiance.

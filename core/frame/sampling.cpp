@@ -30,7 +30,23 @@ float inverse_blackman_harris(float u) {
   return static_cast<float>((i + within) / kSteps);
 }
 
+/// Element `index` of the additive sequence that begins at 0.5, 0 … 1.
+float additive(int index, double step) {
+  const double x = 0.5 + index * step;
+  return glm::min(static_cast<float>(x - std::floor(x)), 0x1.fffffep-1f);
+}
+
 }  // namespace
+
+vec2 lens_position(int index) {
+  // The three-dimensional generalisation of the golden ratio: no step of another sequence here.
+  constexpr double kRatio = 1.22074408460575947536;
+  return {additive(index, 1.0 / kRatio), additive(index, 1.0 / (kRatio * kRatio))};
+}
+
+float shutter_time(int index) {
+  return additive(index, 0.61803398874989484820);
+}
 
 vec2 subpixel_offset(const Settings& settings, int index) {
   constexpr double kPlastic = 1.32471795724474602596;

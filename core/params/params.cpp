@@ -178,6 +178,10 @@ const std::vector<Row<Settings>>& scene_rows() {
           {"film_transparent", kScene, kBool, "false", 0, 0, {}, "", "",
            "Leave the world out of the picture: it still lights and shows in mirrors and glass, "
            "and the picture's alpha is 0 where nothing else is seen"}),
+      row(&S::motion_blur,
+          {"motion_blur", kScene, kBool, "false", 0, 0, {}, "", "",
+           "Blur what moves while the shutter is open. Each sample has its own moment, for which "
+           "what moves is built anew; fast motion needs many samples"}),
   };
   return rows;
 }

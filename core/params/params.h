@@ -40,6 +40,7 @@ struct Settings {
   int threads = 0;
   bool validate_areas = false;
   bool film_transparent = false;
+  bool motion_blur = false;
 };
 
 /// Settings of one object (paper: K and E), and per-effect overrides.

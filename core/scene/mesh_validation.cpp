@@ -143,6 +143,34 @@ std::vector<uint32_t> copy_slots(const MeshInput& input, const Kept& kept, Mesh&
   return slots;
 }
 
+/// Throws where a position is beyond what a mesh may hold.
+void copy_motion(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs& repairs) {
+  const size_t vertices = input.positions.size() / 3;
+  const size_t corners = input.triangles.size();
+  auto motion = std::make_shared<MeshMotion>(input.motion_count);
+  for (size_t step = 0; step < input.motion_count; ++step) {
+    MeshInput moved = input;
+    moved.positions = input.motion_positions.subspan(3 * vertices * step, 3 * vertices);
+    Mesh shape;
+    for (size_t v = 0; v < vertices; ++v) {
+      shape.positions.push_back(vec3_at(moved.positions, v));
+      if (!usable(shape.positions.back())) {
+        fail(ErrorCode::invalid_argument,
+             "Mesh '{}': vertex {} of step {} of its motion is not finite. Leave the motion out.",
+             input.name, v, step);
+      }
+    }
+    if (!input.motion_corner_normals.empty()) {
+      moved.corner_normals = input.motion_corner_normals.subspan(3 * corners * step, 3 * corners);
+      copy_normals(moved, kept, shape, repairs);
+    } else {
+      shape.corner_normals = mesh.corner_normals;
+    }
+    (*motion)[step] = {std::move(shape.positions), std::move(shape.corner_normals)};
+  }
+  mesh.motion = std::move(motion);
+}
+
 void warn_of(const Repairs& r, const MeshInput& input) {
   std::string text;
   const auto add = [&text](size_t count, const char* what) {
@@ -177,6 +205,7 @@ ValidMesh validate_mesh(const MeshInput& input) {
     for (int corner = 0; corner < 3; ++corner) mesh->bounds.extend(mesh->positions[v[corner]]);
   }
   if (!input.corner_normals.empty()) copy_normals(input, kept, *mesh, repairs);
+  if (input.motion_count > 0) copy_motion(input, kept, *mesh, repairs);
   if (!input.corner_uvs.empty()) copy_uvs(input, kept, *mesh, repairs);
   if (!input.corner_tangents.empty()) copy_tangents(input, kept, *mesh, repairs);
   std::vector<uint32_t> slots = copy_slots(input, kept, *mesh);

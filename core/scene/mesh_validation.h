@@ -24,6 +24,9 @@ struct MeshInput {
   std::span<const float> corner_uvs;             // 6 per triangle
   std::span<const float> corner_tangents;        // 12 per triangle
   std::span<const uint32_t> triangle_materials;  // 1 per triangle
+  size_t motion_count = 0;                       // shapes at even steps of time
+  std::span<const float> motion_positions;       // as `positions`, shape after shape
+  std::span<const float> motion_corner_normals;  // as `corner_normals`, likewise; may be empty
 };
 
 struct ValidMesh {
@@ -33,8 +36,8 @@ struct ValidMesh {
 
 /// Throws Error(invalid_argument) for an index or a slot out of range. Leaves triangles out that
 /// have a vertex beyond ±1e18 (or not finite), or so little area that a float holds no normal of
-/// theirs; repairs normals, UVs and tangents that are not finite. What it changed is warned of
-/// once, with counts.
+/// theirs; refuses shapes of a motion that are not finite; repairs normals, UVs and tangents that
+/// are not finite. What it changed is warned of once, with counts.
 ValidMesh validate_mesh(const MeshInput& input);
 
 /// Embree reads whole 16-byte words, so 4 bytes past the last position must be readable.

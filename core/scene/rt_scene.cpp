@@ -80,7 +80,8 @@ std::vector<int> RtScene::choose_static_objects() {
     const Object& object = scene_->objects[i];
     if (users_[object.mesh] != 1) continue;
     const auto last = last_transforms_.find(object.name);
-    if (last != last_transforms_.end() && last->second != object.world_from_object) {
+    const bool moved = last != last_transforms_.end() && last->second != object.world_from_object;
+    if (moved || object.motion || scene_->meshes[object.mesh]->motion) {
       moving_.insert(object.name);
     }
     transforms.emplace(object.name, object.world_from_object);

@@ -10,10 +10,20 @@
 
 #include "base/math.h"
 #include "params/params.h"
+#include "scene/pose.h"
 
 namespace kestrel {
 
 inline constexpr int kNone = -1;
+
+/// A mesh at a moment: what of it may change.
+struct MeshShape {
+  std::vector<vec3> positions;
+  std::vector<vec3> corner_normals;  // empty: flat faces
+};
+
+/// A mesh's shapes at even steps of time, two or more.
+using MeshMotion = std::vector<MeshShape>;
 
 /// Triangles in object space. Arrays of corners hold three entries per triangle, in its order.
 struct Mesh {
@@ -25,6 +35,7 @@ struct Mesh {
   std::vector<vec4> corner_tangents;         // xyz unit, w = sign of the bitangent; empty: none
   std::vector<uint32_t> triangle_materials;  // slot of the object; empty: slot 0
   Bounds bounds;                             // object space
+  std::shared_ptr<const MeshMotion> motion;  // null: keeps its shape
 };
 
 enum class Extension : uint8_t { repeat, clamp, clip };
@@ -113,9 +124,10 @@ struct Object {
   int unit = kNone;
   std::vector<int> materials;  // by slot; holds every slot that the mesh uses
   mat4x3 world_from_object{1.0f};
-  bool flips_orientation = false;  // negative determinant
-  uint8_t hidden_from = 0;         // RayBits that do not meet it
-  bool holdout = false;            // for camera rays a hole in the picture
+  bool flips_orientation = false;              // negative determinant
+  uint8_t hidden_from = 0;                     // RayBits that do not meet it
+  bool holdout = false;                        // for camera rays a hole in the picture
+  std::shared_ptr<const ObjectMotion> motion;  // null: stands still
 };
 
 /// What the heuristic selects: an object, or all instances of one instancer.
@@ -137,6 +149,11 @@ struct Camera {
   float left = -1.0f, right = 1.0f, bottom = -1.0f, top = 1.0f;
   float near_clip = 0.1f;  // metres
   float far_clip = 1000.0f;
+  float focus_distance = 1.0f;     // metres along the view to the plane in focus
+  float aperture_radius = 0.0f;    // metres; 0: everything is in focus
+  int aperture_blades = 0;         // corners of the aperture; below 3: round
+  float aperture_rotation = 0.0f;  // radians, anticlockwise
+  float aperture_ratio = 1.0f;     // height over width
 };
 
 enum class WorldKind : uint8_t { color, equirectangular, cube };
@@ -158,6 +175,7 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<Unit> units;
   Camera camera;
+  std::vector<Camera> camera_motion;  // at even steps of time, two or more; empty: stands still
   World world;
   Settings settings;
   bool has_holdouts = false;  // whether some object is one

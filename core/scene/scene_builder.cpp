@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "scene/motion.h"
 #include "scene/tangents.h"
 
 namespace kestrel {
@@ -110,7 +111,7 @@ void SceneBuilder::set_object(uint64_t id, ObjectInput input) {
   if (ObjectEntry* known = objects_.find(id)) {
     known->input = std::move(input);
   } else {
-    objects_.put(id, {std::move(input), {}});
+    objects_.put(id, {std::move(input), {}, {}});
   }
 }
 
@@ -123,6 +124,18 @@ void SceneBuilder::set_object_transform(uint64_t id, const mat4x3& world_from_ob
   check_matrix(world_from_object, fmt::format("Object '{}'", object->input.name),
                "world_from_object");
   object->input.world_from_object = world_from_object;
+}
+
+void SceneBuilder::set_object_motion(uint64_t id, const std::vector<mat4x3>& world_from_object) {
+  ObjectEntry* object = objects_.find(id);
+  if (!object) {
+    fail(ErrorCode::invalid_argument,
+         "There is no object {} to give a motion. Set it with kestrelSetObject() first.", id);
+  }
+  for (const mat4x3& matrix : world_from_object) {
+    check_matrix(matrix, fmt::format("Object '{}'", object->input.name), "motion");
+  }
+  object->motion = motion_from(world_from_object);
 }
 
 void SceneBuilder::set_object_setting(uint64_t id, std::string_view name, std::string_view value) {
@@ -138,6 +151,20 @@ void SceneBuilder::set_object_setting(uint64_t id, std::string_view name, std::s
 
 void SceneBuilder::set_camera(const Camera& camera) {
   camera_ = checked_camera(camera);
+  camera_motion_.clear();
+}
+
+void SceneBuilder::set_camera_motion(const std::vector<Camera>& states) {
+  std::vector<Camera> checked;
+  for (const Camera& state : states) {
+    checked.push_back(checked_camera(state));
+    if (!camera_ || camera_->projection != state.projection) {
+      fail(ErrorCode::invalid_operation,
+           "The camera's motion needs a camera of the same projection. Set it with "
+           "kestrelSetCamera() first.");
+    }
+  }
+  camera_motion_ = std::move(checked);
 }
 
 void SceneBuilder::set_world(const WorldInput& input) {
@@ -278,6 +305,7 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
   object.flips_orientation = glm::determinant(mat3(input.world_from_object)) < 0.0f;
   object.hidden_from = input.hidden_from;
   object.holdout = input.holdout;
+  object.motion = entry.motion;
   out.scene->has_holdouts = out.scene->has_holdouts || input.holdout;
   object.materials.assign(valid.used_slots.back() + 1, 0);
   for (size_t slot = 0; slot < std::min(object.materials.size(), input.materials.size()); ++slot) {
@@ -338,6 +366,7 @@ std::shared_ptr<Scene> SceneBuilder::assemble() {
   apply_unit_settings(out);
   add_world(out);
   out.scene->camera = *camera_;
+  out.scene->camera_motion = camera_motion_;
   out.scene->settings = settings_;
   return out.scene;
 }

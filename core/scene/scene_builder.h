@@ -36,9 +36,13 @@ class SceneBuilder {
   void set_light(uint64_t id, LightInput input);
   void set_object(uint64_t id, ObjectInput input);
   void set_object_transform(uint64_t id, const mat4x3& world_from_object);
+  /// Matrices at even steps of time, empty: it stands still. Throws Error for an unknown id.
+  void set_object_motion(uint64_t id, const std::vector<mat4x3>& world_from_object);
   /// Of the object's unit; of several objects of one unit the last call decides.
   void set_object_setting(uint64_t id, std::string_view name, std::string_view value);
   void set_camera(const Camera& camera);
+  /// States at even steps of time. Throws Error where there is no camera of that projection.
+  void set_camera_motion(const std::vector<Camera>& states);
   void set_world(const WorldInput& input);
   void set_setting(std::string_view name, std::string_view value);
   std::string setting(std::string_view name) const;
@@ -61,6 +65,7 @@ class SceneBuilder {
   struct ObjectEntry {
     ObjectInput input;
     std::map<std::string, ObjectSetting> settings;  // by name
+    std::shared_ptr<const ObjectMotion> motion;     // null: stands still
   };
 
   /// What a commit works with; indices are those of the new scene.
@@ -81,6 +86,7 @@ class SceneBuilder {
   ItemStore<Light> lights_;
   ItemStore<ObjectEntry> objects_;
   std::optional<Camera> camera_;
+  std::vector<Camera> camera_motion_;
   WorldInput world_;
   Settings settings_;
   uint64_t setting_calls_ = 0;

@@ -127,12 +127,20 @@ Camera checked_camera(Camera camera) {
   check.finite("top", camera.top);
   check.finite("near_clip", camera.near_clip);
   check.finite("far_clip", camera.far_clip);
+  check.finite("focus_distance", camera.focus_distance);
+  check.finite("aperture_radius", camera.aperture_radius);
+  check.finite("aperture_rotation", camera.aperture_rotation);
+  check.finite("aperture_ratio", camera.aperture_ratio);
   if (!(camera.left < camera.right && camera.bottom < camera.top)) {
     check.refuse("its window is empty; left must be below right, and bottom below top");
   }
   if (!(camera.near_clip < camera.far_clip)) check.refuse("near_clip must be below far_clip");
   if (camera.projection == Projection::perspective && !(camera.near_clip > 0.0f)) {
     check.refuse("near_clip must be above 0 in perspective");
+  }
+  if (camera.aperture_radius > 0.0f) {
+    check.clamp("focus_distance", camera.focus_distance, 1e-5f, 1e9f);
+    check.clamp("aperture_ratio", camera.aperture_ratio, 0.01f, 100.0f);
   }
   mat4x3& m = camera.world_from_camera;
   if (!invertible(m)) check.refuse("'world_from_camera' has no inverse; give it a scale of 1");

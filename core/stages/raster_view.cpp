@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/raster_view.h"
 
+#include "frame/lens.h"
+
 namespace kestrel {
 namespace {
 
@@ -27,6 +29,12 @@ glm::dmat4 clip_from_camera(const Camera& camera) {
   return m;
 }
 
+/// The pinhole camera of the frame's sample.
+Camera sample_camera(const Scene& scene, const FrameInputs& inputs) {
+  if (!inputs.lens.open) return scene.camera;
+  return seen_through(scene.camera, aperture_point(scene.camera, inputs.lens, 0, 0));
+}
+
 /// Moves the picture by -subpixel pixels: clip x and y by a share of w.
 glm::dmat4 subpixel_shift(const FrameInputs& inputs) {
   glm::dmat4 m(1.0);
@@ -38,8 +46,9 @@ glm::dmat4 subpixel_shift(const FrameInputs& inputs) {
 }  // namespace
 
 glm::dmat4 clip_from_world(const Scene& scene, const FrameInputs& inputs) {
-  const glm::dmat4 world_from_camera(square(scene.camera.world_from_camera));
-  return subpixel_shift(inputs) * clip_from_camera(scene.camera) * glm::inverse(world_from_camera);
+  const Camera camera = sample_camera(scene, inputs);
+  const glm::dmat4 world_from_camera(square(camera.world_from_camera));
+  return subpixel_shift(inputs) * clip_from_camera(camera) * glm::inverse(world_from_camera);
 }
 
 bool may_be_visible(const Bounds& b, const glm::dmat4& clip_from_world) {
@@ -62,9 +71,10 @@ bool may_be_visible(const Bounds& b, const glm::dmat4& clip_from_world) {
 
 gpu::GpuFrame gpu_frame(const Scene& scene, const FrameInputs& inputs) {
   gpu::GpuFrame out{};
-  const Camera& camera = scene.camera;
+  const Camera camera = sample_camera(scene, inputs);
   out.clip_from_world = mat4(clip_from_world(scene, inputs));
   out.world_from_camera = square(camera.world_from_camera);
+  if (inputs.lens.open) out.world_from_camera[2] = glm::normalize(out.world_from_camera[2]);
   out.map_from_world = mat4(scene.world.map_from_world);
   out.window = vec4(camera.left, camera.right, camera.bottom, camera.top);
   out.picture_size = vec2(inputs.width, inputs.height);

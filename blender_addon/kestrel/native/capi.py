@@ -55,6 +55,9 @@ class Mesh(Structure):
         ("corner_uvs", float_p),
         ("corner_tangents", float_p),
         ("triangle_materials", uint32_p),
+        ("motion_count", c_size_t),
+        ("motion_positions", float_p),
+        ("motion_corner_normals", float_p),
     ]
 
 
@@ -131,6 +134,11 @@ class Camera(Structure):
         ("top", c_float),
         ("near_clip", c_float),
         ("far_clip", c_float),
+        ("aperture_radius", c_float),
+        ("focus_distance", c_float),
+        ("aperture_blades", c_int32),
+        ("aperture_rotation", c_float),
+        ("aperture_ratio", c_float),
     ]
 
 
@@ -173,9 +181,11 @@ FUNCTIONS = {
     "kestrelSetLight": (c_int, [c_void_p, c_uint64, POINTER(Light)]),
     "kestrelSetObject": (c_int, [c_void_p, c_uint64, POINTER(Object)]),
     "kestrelSetObjectTransform": (c_int, [c_void_p, c_uint64, float_p]),
+    "kestrelSetObjectMotion": (c_int, [c_void_p, c_uint64, float_p, c_size_t]),
     "kestrelSetObjectSetting": (c_int, [c_void_p, c_uint64, c_char_p, c_char_p]),
     "kestrelRemove": (c_int, [c_void_p, c_int, c_uint64]),
     "kestrelSetCamera": (c_int, [c_void_p, POINTER(Camera)]),
+    "kestrelSetCameraMotion": (c_int, [c_void_p, POINTER(Camera), c_size_t]),
     "kestrelSetWorld": (c_int, [c_void_p, POINTER(World)]),
     "kestrelSetSetting": (c_int, [c_void_p, c_char_p, c_char_p]),
     "kestrelGetSetting": (c_char_p, [c_void_p, c_char_p]),
@@ -321,14 +331,18 @@ class Scene:
             self._handle = None
 
     def set_mesh(self, ident, name, positions, triangles, corner_normals=None, corner_uvs=None,
-                 triangle_materials=None):
-        """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,)."""
+                 triangle_materials=None, motion=None):
+        """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,). `motion`:
+        positions and corner normals, or None for those, of several shapes one after the other."""
+        moved, moved_normals = motion or (None, None)
         mesh = Mesh(
             encode(name), len(positions), pointer(positions, float_p, np.float32),
             len(triangles), pointer(triangles, uint32_p, np.uint32),
             pointer(corner_normals, float_p, np.float32),
             pointer(corner_uvs, float_p, np.float32), None,
-            pointer(triangle_materials, uint32_p, np.uint32))
+            pointer(triangle_materials, uint32_p, np.uint32),
+            0 if moved is None else len(moved) // len(positions),
+            pointer(moved, float_p, np.float32), pointer(moved_normals, float_p, np.float32))
         self.library.check(self.c.kestrelSetMesh(self.handle, ident, byref(mesh)))
 
     def set_texture_file(self, ident, path, options):
@@ -370,6 +384,12 @@ class Scene:
         self.library.check(self.c.kestrelSetObjectTransform(
             self.handle, ident, (c_float * 12)(*world_from_object)))
 
+    def set_object_motion(self, ident, matrices):
+        """As set_object_transform() at even steps of time; none: it stands still."""
+        values = (c_float * (12 * len(matrices)))(*(v for matrix in matrices for v in matrix))
+        self.library.check(self.c.kestrelSetObjectMotion(
+            self.handle, ident, values, len(matrices)))
+
     def set_object_setting(self, ident, name, value):
         self.library.check(self.c.kestrelSetObjectSetting(
             self.handle, ident, encode(name), encode(value)))
@@ -379,6 +399,11 @@ class Scene:
 
     def set_camera(self, camera):
         self.library.check(self.c.kestrelSetCamera(self.handle, byref(camera)))
+
+    def set_camera_motion(self, cameras):
+        """Its states at even steps of time; ends with set_camera()."""
+        self.library.check(self.c.kestrelSetCameraMotion(
+            self.handle, (Camera * len(cameras))(*cameras), len(cameras)))
 
     def set_world(self, world):
         self.library.check(self.c.kestrelSetWorld(self.handle, byref(world)))

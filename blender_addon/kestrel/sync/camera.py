@@ -4,6 +4,8 @@
 from ..native import capi
 from .object import columns
 
+NEAREST_FOCUS_M = 1e-5
+
 
 def frame_size(render):
     """(width, height) of the whole picture in pixels, before any border."""
@@ -50,8 +52,45 @@ def rigid(matrix):
     return result
 
 
+def focus_distance(obj):
+    """Metres along the view from an evaluated camera to what it focuses on."""
+    dof = obj.data.dof
+    target = dof.focus_object
+    if target is None:
+        return max(dof.focus_distance, NEAREST_FOCUS_M)
+    place = target.matrix_world
+    bone = target.pose.bones.get(dof.focus_subtarget) if target.pose else None
+    if bone is not None:
+        place = place @ bone.matrix
+    depth = (rigid(obj.matrix_world).inverted() @ place.translation).z
+    return max(abs(depth), NEAREST_FOCUS_M)
+
+
+def aperture(obj):
+    """The part of capi.Camera that blurs what is out of focus: radius (0: nothing), focus distance,
+    blades, rotation and ratio."""
+    data, dof = obj.data, obj.data.dof
+    if not dof.use_dof:
+        return 0.0, 1.0, 0, 0.0, 1.0
+    focal_length = 1.0 if data.type == "ORTHO" else 1e-3 * data.lens
+    return (focal_length / (2.0 * max(dof.aperture_fstop, 1e-5)), focus_distance(obj),
+            dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio)
+
+
+def set_aperture(item, values):
+    (item.aperture_radius, item.focus_distance, item.aperture_blades, item.aperture_rotation,
+     item.aperture_ratio) = values
+
+
 def sync_camera(export, obj, render):
     """Send the camera; returns the (width, height) of what is rendered."""
+    item, size = camera_item(export, obj, render)
+    export.scene.set_camera(item)
+    return size
+
+
+def camera_item(export, obj, render):
+    """(capi.Camera, (width, height) of what is rendered) of an evaluated object or None."""
     if obj is None:
         raise capi.KestrelError(
             "The scene has no camera. Add one with Add > Camera, or make one the scene's camera "
@@ -72,5 +111,5 @@ def sync_camera(export, obj, render):
     item.left, item.right, item.bottom, item.top = crop(
         window(data, render, width, height), area, width, height)
     item.near_clip, item.far_clip = data.clip_start, data.clip_end
-    export.scene.set_camera(item)
-    return area[2] - area[0], area[3] - area[1]
+    set_aperture(item, aperture(obj))
+    return item, (area[2] - area[0], area[3] - area[1])

@@ -4,7 +4,8 @@
 from ..native import loader
 
 # Rows that are Blender's own settings, not properties of Kestrel: read from the scene.
-BLENDERS_OWN = {"film_transparent": lambda scene: scene.render.film_transparent}
+BLENDERS_OWN = {"film_transparent": lambda scene: scene.render.film_transparent,
+                "motion_blur": lambda scene: scene.render.use_motion_blur}
 
 
 def as_text(row, value):

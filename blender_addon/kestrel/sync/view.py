@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from mathutils import Matrix
 
 from ..native import capi
-from .camera import crop, frame_size, rigid, window
+from .camera import aperture, crop, frame_size, rigid, set_aperture, window
 from .object import columns
+
+PINHOLE = (0.0, 1.0, 0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,7 @@ class View:
     clip: tuple               # (near, far), metres
     region: tuple             # (width, height), pixels
     area: tuple               # (left, bottom, right, top) of what is drawn, pixels of the region
+    aperture: tuple           # as camera.aperture() has it
 
     @property
     def size(self):
@@ -36,6 +39,7 @@ class View:
         item.world_from_camera[:] = self.world_from_camera
         item.left, item.right, item.bottom, item.top = self.window
         item.near_clip, item.far_clip = self.clip
+        set_aperture(item, self.aperture)
         return item
 
 
@@ -62,6 +66,13 @@ def clip_range(space, rv3d, camera):
     if rv3d.is_perspective:
         return space.clip_start, space.clip_end
     return -space.clip_end, space.clip_end
+
+
+def view_aperture(rv3d, camera):
+    """What is out of focus is blurred through a camera alone."""
+    if rv3d.view_perspective == "CAMERA" and camera and camera.type == "CAMERA":
+        return aperture(camera)
+    return PINHOLE
 
 
 def camera_frame(camera, render, shown, region):
@@ -117,4 +128,4 @@ def region_view(region, space, rv3d, depsgraph):
     return View(
         projection=capi.PERSPECTIVE if matrix[3][3] == 0.0 else capi.ORTHOGRAPHIC,
         world_from_camera=columns(world_from_camera), window=crop(shown, area, *size),
-        clip=(near, far), region=size, area=area)
+        clip=(near, far), region=size, area=area, aperture=view_aperture(rv3d, camera))

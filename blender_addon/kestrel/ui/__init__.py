@@ -17,6 +17,8 @@ NOT_FOR_KESTREL = {
     "EEVEE_MATERIAL_PT_viewport_settings", "NODE_DATA_PT_light", "OBJECT_PT_shading",
     "RENDER_PT_output_views", "RENDER_PT_stereoscopy", "WORLD_PT_context_world",
 }
+# Panels of Blender's that only engines which name them show.
+ALSO_FOR_KESTREL = {"DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"}
 NOT_FOR_KESTREL_PREFIXES = ("DATA_PT_lightprobe", "MATERIAL_PT_freestyle", "RENDER_PT_freestyle",
                             "RENDER_PT_gpencil", "RENDER_PT_grease_pencil", "RENDER_PT_simplify",
                             "VIEWLAYER_PT_freestyle")
@@ -27,7 +29,8 @@ def shared_panels():
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
         name = panel.__name__
-        if ("BLENDER_RENDER" in engines and name not in NOT_FOR_KESTREL
+        if name in ALSO_FOR_KESTREL or (
+                "BLENDER_RENDER" in engines and name not in NOT_FOR_KESTREL
                 and not name.startswith(NOT_FOR_KESTREL_PREFIXES)):
             yield panel
 

@@ -114,6 +114,23 @@ class KESTREL_RENDER_PT_simplify_render(SimplifyPanel, bpy.types.Panel):
              ("simplify_child_particles_render", "Max Child Particles"))
 
 
+class KESTREL_RENDER_PT_motion_blur(KestrelPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        layout, render = self.layout, context.scene.render
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.active = render.use_motion_blur
+        if hasattr(render, "motion_blur_position"):  # 4.2 on
+            layout.prop(render, "motion_blur_position", text="Position")
+        layout.prop(render, "motion_blur_shutter")
+
+
 class KESTREL_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
@@ -182,6 +199,7 @@ CLASSES = (
     KESTREL_RENDER_PT_simplify,
     KESTREL_RENDER_PT_simplify_viewport,
     KESTREL_RENDER_PT_simplify_render,
+    KESTREL_RENDER_PT_motion_blur,
     KESTREL_RENDER_PT_film,
     KESTREL_RENDER_PT_film_pixel_filter,
     KESTREL_RENDER_PT_performance,

@@ -115,6 +115,10 @@ typedef struct KestrelMesh {
   const float* corner_tangents;       /* 4 per corner: xyz, sign of the bitangent; or NULL: made
                                          from the UVs where a normal map needs them */
   const uint32_t* triangle_materials; /* object slot per triangle, 0…65535, or NULL: 0 */
+  size_t motion_count;                /* shapes at even steps of time, 2…129; 0: keeps its shape.
+                                         What the steps are says kestrelSetObjectMotion() */
+  const float* motion_positions;      /* as `positions`, shape after shape */
+  const float* motion_corner_normals; /* as `corner_normals`, likewise; NULL: flat, or as those */
 } KestrelMesh;
 
 /* At most 2^29 vertices and as many triangles; none is fine. Index out of range: error. Triangles
@@ -245,6 +249,14 @@ KESTREL_API KestrelError kestrelSetObject(KestrelScene scene, uint64_t id,
 KESTREL_API KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
                                                    const float world_from_object[12]);
 
+/* How an object moves: its matrices, 12 floats each, at `count` even steps of time (2…129; 0: it
+ * stands still, as at first). With the setting `motion_blur` the steps begin where the shutter
+ * opens and end where it closes. Without, the first and the last are the object's places in the
+ * frames before and after, and only the pass Vector looks at them. The motion outlives
+ * kestrelSetObject() and goes with the object. */
+KESTREL_API KestrelError kestrelSetObjectMotion(KestrelScene scene, uint64_t id,
+                                                const float* world_from_object, size_t count);
+
 /* A setting of the object's unit, by the table's names: relevance, cost, shadows … Of several
  * objects of a unit the last call decides. It outlives kestrelSetObject() and goes with the object;
  * an unknown id is an error. */
@@ -275,9 +287,22 @@ typedef struct KestrelCamera {
   float world_from_camera[12]; /* its scale is ignored */
   float left, right, bottom, top;
   float near_clip, far_clip; /* metres; 0 < near < far (orthographic: near < far) */
+  float aperture_radius;     /* metres; 0: a pinhole, everything is in focus */
+  float focus_distance;      /* metres along the view to the plane in focus */
+  int32_t aperture_blades;   /* corners of the aperture; below 3: round */
+  float aperture_rotation;   /* radians, anticlockwise */
+  float aperture_ratio;      /* its height over its width */
 } KestrelCamera;
 
+/* With an aperture every sample looks through another point of it. A frame of one sample within a
+ * budget has a pinhole. */
+
 KESTREL_API KestrelError kestrelSetCamera(KestrelScene scene, const KestrelCamera* camera);
+
+/* How the camera moves: its states at `count` even steps of time (2…129), as those of
+ * kestrelSetObjectMotion(). All must have the camera's projection. Ends with kestrelSetCamera(). */
+KESTREL_API KestrelError kestrelSetCameraMotion(KestrelScene scene, const KestrelCamera* states,
+                                                size_t count);
 
 typedef enum KestrelWorldKind {
   KESTREL_WORLD_COLOR = 0,

@@ -15,7 +15,7 @@ constexpr int kPacketWidth = 4;
 constexpr int kPacketHeight = embree::kPacket / kPacketWidth;
 
 void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& hit, Surface s,
-               size_t i, GBuffer& out) {
+               const ivec2& pixel, size_t i, GBuffer& out) {
   out.position[i] = s.position;
   out.normal[i] = s.normal;
   out.normal_geometric[i] = s.normal_geometric;
@@ -28,7 +28,7 @@ void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& h
   out.object[i] = static_cast<uint32_t>(hit.object) + 1;
   out.material[i] =
       static_cast<uint32_t>(material_of(scene, scene.objects[hit.object], hit.triangle));
-  const vec3 to_viewer = camera.to_viewer(s.position);
+  const vec3 to_viewer = camera.to_viewer(s.position, pixel.x, pixel.y);
   face_viewer(s, to_viewer);
   out.lighting[i] = lighting_without_shadows(scene, s, to_viewer);
 }
@@ -58,7 +58,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
     if (missed || holdout) {
       out.set_nothing(i, missed ? sample_world(scene, rays[lane].direction) : vec3(0.0f));
     } else {
-      store_hit(scene, camera, met.hits[next], met.surfaces[next], i, out);
+      store_hit(scene, camera, met.hits[next], met.surfaces[next], {x, y}, i, out);
     }
     if (!missed) ++next;
   }

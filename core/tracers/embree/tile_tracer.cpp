@@ -91,7 +91,9 @@ void TileTracer::gather_pixel(uint32_t i) {
   const uint8_t effects = request_.selection.units[unit].effects;
   if (effects == 0) return;
   const Material& material = scene_.materials[g.material[i]];
-  Pixel p{i, unit, {}, camera_.to_viewer(g.position[i])};
+  const auto width = static_cast<uint32_t>(g.width);
+  const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+  Pixel p{i, unit, {}, camera_.to_viewer(g.position[i], x, y)};
   p.surface = {g.position[i],
                g.normal[i],
                g.normal_geometric[i],

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How things move: while the shutter is open, for motion blur, or from the frame before to the one
+after, for the pass Vector.
+
+Blender's scene is evaluated at the first, the middle and the last moment. The middle one is what
+the export sends; what differs at the others gets a motion. Costs two further evaluations and
+exports a frame.
+"""
+
+import numpy as np
+
+from .. import compat
+from ..native import capi
+from ..session import Export
+from . import export_depsgraph
+from .camera import camera_item
+from .object import sync_objects
+
+
+class _Catcher:
+    """Takes the place of the core's scene: keeps meshes and drops the rest."""
+
+    def __init__(self):
+        self.meshes = {}  # id: arguments of capi.Scene.set_mesh after it
+
+    def set_mesh(self, ident, *values):
+        # Copies: the next evaluation frees what arrays may look at.
+        self.meshes[ident] = [value.copy() if isinstance(value, np.ndarray) else value
+                              for value in values]
+
+    def __getattr__(self, _name):
+        return lambda *_arguments: None
+
+
+class _Moment(Export):
+    """An export that is only looked at: what is where, and which meshes are not as they were sent."""
+
+    def __init__(self, session, depsgraph, camera, wanted):
+        """`camera`: evaluated object or None. `wanted`: ids of meshes to keep even though they are
+        as they were sent."""
+        scene = depsgraph.scene_eval
+        super().__init__(session, lambda _text: None, scene.kestrel.environment_ior)
+        self.scene = _Catcher()
+        self.matrices = {}  # object id: 12 floats
+        self._wanted = wanted
+        sync_objects(self, depsgraph)
+        self.camera, _ = camera_item(self, camera, scene.render)
+
+    def warn(self, _text):
+        """Everything was said in the export."""
+
+    def note(self, _name, _value):
+        """Settings are those of the export."""
+
+    def put(self, kind, ident, content, send):
+        if kind == capi.KIND_MESH and (
+                ident in self._wanted or self.session.sent.get((kind, ident)) != content):
+            send()
+
+    def put_object(self, ident, _description, matrix):
+        self.matrices[ident] = matrix
+
+
+def shutter(scene):
+    """(start, middle, end) in frames after the current one, or None where nothing asks for
+    motion."""
+    render = scene.render
+    if render.use_motion_blur:
+        half = 0.5 * render.motion_blur_shutter
+        middle = {"START": half, "END": -half}.get(compat.motion_blur_position(scene), 0.0)
+        return middle - half, middle, middle + half
+    if any(layer.use_pass_vector for layer in scene.view_layers):
+        return -1.0, 0.0, 1.0
+    return None
+
+
+def export_frame(engine, session, depsgraph, camera_of, say):
+    """As sync.export_depsgraph(), with motion where the scene asks for it. `camera_of(engine,
+    depsgraph)` gives the evaluated camera or None. Blender's scene is back at its frame in the
+    end."""
+    scene = depsgraph.scene
+    times = shutter(scene)
+    if times is None:
+        _send_objects(session, [])
+        return export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say)
+    now = scene.frame_current_final
+
+    def go_to(time):
+        frame, part = divmod(now + time, 1.0)
+        engine.frame_set(int(frame), part)
+
+    try:
+        start, middle, end = times
+        if middle:
+            go_to(middle)
+        size = export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say)
+
+        def look(time, wanted=()):
+            go_to(time)
+            return _Moment(session, depsgraph, camera_of(engine, depsgraph), wanted)
+
+        first, last = look(start), look(end)
+        deforming = set(first.scene.meshes) | set(last.scene.meshes)
+        moments = [first, look(middle, deforming), last]
+        _send_objects(session, moments)
+        _send_meshes(session, moments, deforming)
+        _send_camera(session, [moment.camera for moment in moments])
+        session.scene.commit()
+        return size
+    finally:
+        go_to(0.0)
+
+
+def _send_objects(session, moments):
+    moving = set()
+    for ident, matrix in (moments[1].matrices.items() if moments else ()):
+        states = [moment.matrices.get(ident) for moment in moments]
+        if None not in states and any(state != matrix for state in states):
+            moving.add(ident)
+            session.scene.set_object_motion(ident, states)
+    for ident in session.moving - moving:
+        if (capi.KIND_OBJECT, ident) in session.sent:
+            session.scene.set_object_motion(ident, [])
+    session.moving = moving
+
+
+def _send_meshes(session, moments, deforming):
+    for ident in deforming:
+        middle = moments[1].scene.meshes.get(ident)
+        if middle is None or (capi.KIND_MESH, ident) not in session.sent:
+            continue  # it is there only at one end
+        shapes = [moment.scene.meshes.get(ident, middle) for moment in moments]
+        if not all(_same_topology(shape, middle) for shape in shapes):
+            continue
+        positions = np.concatenate([shape[1] for shape in shapes])
+        normals = [shape[3] for shape in shapes]
+        session.scene.set_mesh(ident, *middle, motion=(
+            positions, None if middle[3] is None else np.concatenate(normals)))
+        # The next frame sends it again, and without motion if it then keeps its shape.
+        session.sent[capi.KIND_MESH, ident] = None
+        session.shapes = {}
+
+
+def _same_topology(shape, other):
+    """Whether two meshes, as the arguments of set_mesh(), differ in places and normals alone."""
+    return (shape[1].shape == other[1].shape and np.array_equal(shape[2], other[2])
+            and (shape[3] is None) == (other[3] is None))
+
+
+def _send_camera(session, states):
+    if any(bytes(state) != bytes(states[1]) for state in states):
+        session.scene.set_camera_motion(states)
