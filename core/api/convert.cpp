@@ -223,7 +223,7 @@ Camera camera_from(const KestrelCamera& camera) {
   out.focus_distance = camera.focus_distance;
   out.aperture_blades = camera.aperture_blades;
   out.aperture_rotation = camera.aperture_rotation;
-  out.aperture_ratio = camera.aperture_ratio;
+  out.aperture_ratio = camera.aperture_ratio == 0.0f ? 1.0f : camera.aperture_ratio;
   return out;
 }
 

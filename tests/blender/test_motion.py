@@ -57,7 +57,7 @@ class MotionTest(SceneTest):
     def setUp(self):
         super().setUp()
         kestrel = self.scene.kestrel
-        kestrel.samples, kestrel.pixel_filter, kestrel.filter_width = 64, "box", 0.01
+        kestrel.samples, kestrel.pixel_filter, kestrel.filter_width = 89, "box", 0.01
         self.scene.frame_set(10)
         self.scene.render.use_motion_blur = True
         self.scene.render.motion_blur_shutter = 0.5

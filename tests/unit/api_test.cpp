@@ -410,6 +410,42 @@ TEST_F(Api, NumbersThatAreNotFiniteAreErrors) {
   expect_invalid(kestrelSetWorld(scene, &world), {"color"});
 }
 
+TEST_F(Api, MotionIsCheckedAndBlurs) {
+  set_glowing_square();
+  float states[24];
+  for (int i = 0; i < 2; ++i) std::memcpy(states + 12 * i, kIdentity, sizeof(kIdentity));
+  states[9] = -4.0f;  // out of view until half-way
+  states[21] = 4.0f;
+  expect_invalid(kestrelSetObjectMotion(scene, 8, states, 2), {"8"});
+  expect_invalid(kestrelSetObjectMotion(scene, 1, states, 1), {"2 to 129"});
+  expect_invalid(kestrelSetObjectMotion(scene, 1, nullptr, 2), {"world_from_object"});
+  KestrelCamera cameras[2] = {camera_above(), camera_above()};
+  expect_invalid(kestrelSetCameraMotion(scene, nullptr, 2), {"states"});
+  cameras[1].projection = KESTREL_PERSPECTIVE;
+  EXPECT_EQ(kestrelSetCameraMotion(scene, cameras, 2), KESTREL_ERROR_INVALID_OPERATION);
+  const float broken[24] = {NAN};
+  KestrelMesh mesh = square();
+  mesh.motion_count = 2;
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"motion_positions"});
+  mesh.motion_positions = broken;
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"square", "step 0"});
+
+  expect_ok(kestrelSetObjectMotion(scene, 1, states, 2));
+  expect_ok(kestrelSetSetting(scene, "motion_blur", "true"));
+  expect_ok(kestrelSetSetting(scene, "samples", "16"));
+  expect_ok(kestrelCommitScene(scene));
+  float pixel[4];
+  expect_ok(kestrelRender(renderer, 1, 1, nullptr, nullptr));
+  expect_ok(kestrelReadPass(renderer, "Combined", pixel, 4));
+  EXPECT_GT(pixel[2], 0.1f);
+  EXPECT_LT(pixel[2], 1.9f);
+  expect_ok(kestrelSetObjectMotion(scene, 1, nullptr, 0));
+  expect_ok(kestrelCommitScene(scene));
+  expect_ok(kestrelRender(renderer, 1, 1, nullptr, nullptr));
+  expect_ok(kestrelReadPass(renderer, "Combined", pixel, 4));
+  EXPECT_NEAR(pixel[2], 2.0f, 1e-5f);
+}
+
 TEST_F(Api, SettingsAreTextAndUnknownOnesErrors) {
   expect_ok(kestrelSetSetting(scene, "max_depth", "3"));
   EXPECT_STREQ(kestrelGetSetting(scene, "max_depth"), "3");

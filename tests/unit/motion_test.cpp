@@ -78,7 +78,7 @@ class Motion : public ::testing::TestWithParam<Primary> {
   Motion() {
     Settings& settings = maker_.scene->settings;
     settings.primary = GetParam();
-    settings.samples = 128;
+    settings.samples = 144;
     settings.pixel_filter = PixelFilter::box;
     settings.filter_width = 0.01f;
     settings.motion_blur = true;

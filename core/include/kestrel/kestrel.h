@@ -291,7 +291,7 @@ typedef struct KestrelCamera {
   float focus_distance;      /* metres along the view to the plane in focus */
   int32_t aperture_blades;   /* corners of the aperture; below 3: round */
   float aperture_rotation;   /* radians, anticlockwise */
-  float aperture_ratio;      /* its height over its width */
+  float aperture_ratio;      /* its height over its width; 0: 1 */
 } KestrelCamera;
 
 /* With an aperture every sample looks through another point of it. A frame of one sample within a
