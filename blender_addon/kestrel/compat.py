@@ -159,6 +159,35 @@ def curve_radii(curves):
     return None if values is None else values.reshape(-1)
 
 
+# The channel in which an attribute of a type has its values, and how many there are.
+_CHANNELS = {
+    "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
+    "FLOAT2": ("vector", 2), "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),  # bytes too come as linear floats
+}
+
+
+def attribute_values(attribute):
+    """float32 (N, 1...4) of an attribute, colours linear; None where its type has no numbers."""
+    if attribute.data_type not in _CHANNELS:
+        return None
+    channel, width = _CHANNELS[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, FLOAT)
+    if attribute.data_type == "BOOLEAN":
+        flags = np.empty(len(values), bool)
+        attribute.data.foreach_get(channel, flags)
+        values[:] = flags
+    else:
+        attribute.data.foreach_get(channel, values)
+    return values.reshape(-1, width)
+
+
+def render_color(mesh):
+    """The colour attribute that rendering uses, or None."""
+    index = mesh.color_attributes.render_color_index
+    return mesh.color_attributes[index] if 0 <= index < len(mesh.color_attributes) else None
+
+
 def polygon_materials(mesh):
     """int32 (P,): the material slot of each polygon; None where all use the first."""
     values = _attribute(mesh, "material_index", "value", 1, len(mesh.polygons), INT)

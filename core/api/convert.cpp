@@ -76,6 +76,22 @@ size_t motion_steps(size_t count) {
   return count;
 }
 
+AttributeInput attribute_from(const KestrelMeshAttribute& attribute, size_t corners,
+                              const std::string& mesh) {
+  if (attribute.channels != 2 && attribute.channels != 3) {
+    fail(ErrorCode::invalid_argument,
+         "Mesh '{}': an attribute has {} channels. Use 2 for a UV map, 3 for colours.", mesh,
+         attribute.channels);
+  }
+  if (attribute.id == 0) {
+    fail(ErrorCode::invalid_argument, "Mesh '{}': 0 is no id of an attribute. Use another number.",
+         mesh);
+  }
+  const auto channels = static_cast<size_t>(attribute.channels);
+  return {attribute.id, attribute.channels,
+          array(attribute.values, channels * corners, "attributes[].values")};
+}
+
 }  // namespace
 
 std::string text_from(const char* text) {
@@ -112,6 +128,11 @@ MeshInput mesh_from(const KestrelMesh& mesh) {
         array(mesh.motion_positions, 3 * mesh.vertex_count * out.motion_count, "motion_positions");
     out.motion_corner_normals =
         optional_array(mesh.motion_corner_normals, 3 * corners * out.motion_count);
+  }
+  out.uv_map = mesh.uv_map;
+  for (const KestrelMeshAttribute& attribute :
+       array(mesh.attributes, mesh.attribute_count, "attributes")) {
+    out.attributes.push_back(attribute_from(attribute, corners, out.name));
   }
   return out;
 }
@@ -159,6 +180,11 @@ MaterialInput material_from(const KestrelMaterial& material) {
   out.specular_texture = material.specular_texture;
   out.normal_texture = material.normal_texture;
   out.optical_texture = material.optical_texture;
+  std::copy(std::begin(material.uv_maps), std::end(material.uv_maps), m.uv_maps);
+  m.tangent_map = material.tangent_map;
+  m.emission_colors = material.emission_attribute;
+  m.ambient_colors = material.ambient_attribute;
+  m.diffuse_colors = material.diffuse_attribute;
   return out;
 }
 

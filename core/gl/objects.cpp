@@ -145,7 +145,7 @@ VertexArray::VertexArray(std::string_view name_text) : Handle(new_vertex_array()
   label(GL_VERTEX_ARRAY, name(), name_text);
 }
 
-void VertexArray::set_floats(GLuint index, int components, const Buffer& buffer) {
+void VertexArray::set_floats(GLuint index, int components, const Buffer& buffer) const {
   if (!buffer) {
     glDisableVertexArrayAttrib(name(), index);
     return;

@@ -141,7 +141,7 @@ class VertexArray : public Handle<VertexArrayKind> {
 
   /// Attribute `index` reads `components` floats from tightly packed `buffer`; an empty buffer
   /// switches the attribute off, which then has its constant value.
-  void set_floats(GLuint index, int components, const Buffer& buffer);
+  void set_floats(GLuint index, int components, const Buffer& buffer) const;
 };
 
 class Program : public Handle<ProgramKind> {

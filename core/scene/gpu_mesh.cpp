@@ -3,8 +3,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <climits>
 #include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/debug.h"
@@ -14,6 +16,8 @@ namespace {
 
 // Attribute locations of shaders/raster/gbuffer.vert.
 constexpr GLuint kPosition = 0, kNormal = 1, kFaceNormal = 2, kUv = 3, kTangent = 4;
+constexpr GLuint kUvOfTexture = 5;  // 5 ... 10, by TextureSlot
+constexpr GLuint kEmissionColor = 11, kAmbientColor = 12, kDiffuseColor = 13;
 
 /// Triangle indices grouped by slot, and the ranges they make.
 std::vector<uint32_t> group_by_slot(const Mesh& mesh, std::vector<SlotRange>& ranges) {
@@ -47,6 +51,24 @@ void copy_corners(const std::vector<T>& from, size_t triangle, std::vector<T>& t
 }
 
 template <typename T>
+std::vector<T> expand(const std::vector<T>& from, const std::vector<uint32_t>& order) {
+  std::vector<T> to(from.size());
+  tbb::parallel_for(size_t(0), order.size(),
+                    [&](size_t place) { copy_corners(from, order[place], to, place); });
+  return to;
+}
+
+void expand_attributes(const Mesh& mesh, const std::vector<uint32_t>& order, VertexStreams& out) {
+  for (const UvMap& map : mesh.more_uv_maps) {
+    out.more_uv_maps.push_back(
+        {map.id, expand(map.corner_uvs, order), expand(map.corner_tangents, order)});
+  }
+  for (const ColorAttribute& colors : mesh.color_attributes) {
+    out.color_attributes.push_back({colors.id, expand(colors.corner_colors, order)});
+  }
+}
+
+template <typename T>
 gl::Buffer stream_buffer(const Mesh& mesh, const char* what, const std::vector<T>& data) {
   if (data.empty()) return {};
   return gl::Buffer(mesh.name + " " + what, data);
@@ -74,6 +96,7 @@ VertexStreams expand_mesh(const Mesh& mesh) {
     copy_corners(mesh.corner_uvs, triangle, out.uvs, place);
     copy_corners(mesh.corner_tangents, triangle, out.tangents, place);
   });
+  expand_attributes(mesh, order, out);
   for (const vec3& p : out.positions) out.bounds.extend(p);
   return out;
 }
@@ -91,22 +114,70 @@ GpuMesh::GpuMesh(const Mesh& mesh) {
   positions_ = stream_buffer(mesh, "positions", streams.positions);
   face_normals_ = stream_buffer(mesh, "face normals", streams.face_normals);
   normals_ = stream_buffer(mesh, "normals", streams.normals);
-  uvs_ = stream_buffer(mesh, "UVs", streams.uvs);
-  tangents_ = stream_buffer(mesh, "tangents", streams.tangents);
+  own_ = {mesh.uv_map, stream_buffer(mesh, "UVs", streams.uvs),
+          stream_buffer(mesh, "tangents", streams.tangents)};
+  for (const UvMap& map : streams.more_uv_maps) {
+    more_uv_maps_.push_back({map.id, stream_buffer(mesh, "more UVs", map.corner_uvs),
+                             stream_buffer(mesh, "more tangents", map.corner_tangents)});
+  }
+  for (const ColorAttribute& colors : streams.color_attributes) {
+    colors_.push_back({colors.id, stream_buffer(mesh, "colours", colors.corner_colors)});
+  }
 
   vertex_array_ = gl::VertexArray(mesh.name);
   vertex_array_.set_floats(kPosition, 3, positions_);
   vertex_array_.set_floats(kNormal, 3, normals_ ? normals_ : face_normals_);
   vertex_array_.set_floats(kFaceNormal, 3, face_normals_);
-  vertex_array_.set_floats(kUv, 2, uvs_);
-  vertex_array_.set_floats(kTangent, 4, tangents_);
+  vertex_array_.set_floats(kUv, 2, own_.uvs);
+  vertex_array_.set_floats(kTangent, 4, own_.tangents);
   gl::check_errors("uploading the mesh '" + mesh.name + "'");
 }
 
 void GpuMesh::bind() const {
   glBindVertexArray(vertex_array_.name());
-  if (!uvs_) glVertexAttrib2f(kUv, 0.0f, 0.0f);
-  if (!tangents_) glVertexAttrib4f(kTangent, 0.0f, 0.0f, 0.0f, 0.0f);
+  glVertexAttrib2f(kUv, 0.0f, 0.0f);
+  glVertexAttrib4f(kTangent, 0.0f, 0.0f, 0.0f, 0.0f);
+}
+
+/// Null where the mesh has no such map.
+const GpuMesh::UvBuffers* GpuMesh::uv_buffers(uint64_t id) const {
+  if (id == 0 || id == own_.id) return &own_;
+  for (const UvBuffers& map : more_uv_maps_) {
+    if (map.id == id) return &map;
+  }
+  return nullptr;
+}
+
+void GpuMesh::bind_colors(GLuint location, uint64_t id) const {
+  const auto found = std::find_if(colors_.begin(), colors_.end(),
+                                  [id](const ColorBuffer& colors) { return colors.id == id; });
+  static const gl::Buffer kNothing;
+  const float constant = id == 0 ? 1.0f : 0.0f;
+  glVertexAttrib3f(location, constant, constant, constant);
+  vertex_array_.set_floats(location, 3, found == colors_.end() ? kNothing : found->colors);
+}
+
+void GpuMesh::bind_attributes(const Material& material) const {
+  static const UvBuffers kNothing{};
+  const auto buffers = [this](uint64_t id) -> const UvBuffers& {
+    const UvBuffers* found = uv_buffers(id);
+    return found ? *found : kNothing;
+  };
+  const uint64_t uvs = material.uv_maps[kDiffuseTexture];
+  if (std::exchange(bound_uvs_, uvs) != uvs) {
+    vertex_array_.set_floats(kUv, 2, buffers(uvs).uvs);
+  }
+  if (std::exchange(bound_tangents_, material.tangent_map) != material.tangent_map) {
+    vertex_array_.set_floats(kTangent, 4, buffers(material.tangent_map).tangents);
+  }
+  if (!material.reads_attributes()) return;
+  for (GLuint slot = 0; slot < kTextureSlots; ++slot) {
+    glVertexAttrib2f(kUvOfTexture + slot, 0.0f, 0.0f);
+    vertex_array_.set_floats(kUvOfTexture + slot, 2, buffers(material.uv_maps[slot]).uvs);
+  }
+  bind_colors(kEmissionColor, material.emission_colors);
+  bind_colors(kAmbientColor, material.ambient_colors);
+  bind_colors(kDiffuseColor, material.diffuse_colors);
 }
 
 }  // namespace kestrel

@@ -24,6 +24,8 @@ struct VertexStreams {
   std::vector<vec3> normals;
   std::vector<vec2> uvs;
   std::vector<vec4> tangents;
+  std::vector<UvMap> more_uv_maps;
+  std::vector<ColorAttribute> color_attributes;
   std::vector<SlotRange> ranges;  // ascending slots
   Bounds bounds;                  // of the triangles' corners
 };
@@ -39,14 +41,34 @@ class GpuMesh {
   /// Binds the streams; absent ones read as constants (flat normals, uv (0, 0), no tangent).
   void bind() const;
 
+  /// After bind(): the UV maps, tangents and colours that this material asks for take their places.
+  void bind_attributes(const Material& material) const;
+
   const std::vector<SlotRange>& ranges() const { return ranges_; }
   const Bounds& bounds() const { return bounds_; }
 
  private:
+  struct UvBuffers {
+    uint64_t id;
+    gl::Buffer uvs, tangents;
+  };
+  struct ColorBuffer {
+    uint64_t id;
+    gl::Buffer colors;
+  };
+
+  const UvBuffers* uv_buffers(uint64_t id) const;
+  void bind_colors(GLuint location, uint64_t id) const;
+
   std::vector<SlotRange> ranges_;
   Bounds bounds_;
-  gl::Buffer positions_, face_normals_, normals_, uvs_, tangents_;
+  gl::Buffer positions_, face_normals_, normals_;
+  UvBuffers own_;  // the mesh's own UVs
+  std::vector<UvBuffers> more_uv_maps_;
+  std::vector<ColorBuffer> colors_;
   gl::VertexArray vertex_array_;
+  mutable uint64_t bound_uvs_ = 0;  // ids of what the vertex array has now
+  mutable uint64_t bound_tangents_ = 0;
 };
 
 }  // namespace kestrel

@@ -20,6 +20,7 @@ struct Repairs {
   size_t normals = 0;     // corners
   size_t uvs = 0;         // corners
   size_t tangents = 0;    // corners
+  size_t colors = 0;      // corners
 };
 
 vec3 vec3_at(std::span<const float> values, size_t index) {
@@ -95,14 +96,40 @@ void copy_normals(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs&
   }
 }
 
-void copy_uvs(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs& repairs) {
-  mesh.corner_uvs.reserve(3 * kept.triangles.size());
+std::vector<vec2> copy_uvs(std::span<const float> values, const Kept& kept, Repairs& repairs) {
+  std::vector<vec2> uvs;
+  uvs.reserve(3 * kept.triangles.size());
   for (const uint32_t t : kept.triangles) {
     for (size_t corner = 3 * size_t{t}; corner < 3 * size_t{t} + 3; ++corner) {
-      const vec2 uv(input.corner_uvs[2 * corner], input.corner_uvs[2 * corner + 1]);
+      const vec2 uv(values[2 * corner], values[2 * corner + 1]);
       const bool sound = std::isfinite(uv.x) && std::isfinite(uv.y);
       if (!sound) ++repairs.uvs;
-      mesh.corner_uvs.push_back(sound ? uv : vec2(0.0f));
+      uvs.push_back(sound ? uv : vec2(0.0f));
+    }
+  }
+  return uvs;
+}
+
+std::vector<vec3> copy_colors(std::span<const float> values, const Kept& kept, Repairs& repairs) {
+  std::vector<vec3> colors;
+  colors.reserve(3 * kept.triangles.size());
+  for (const uint32_t t : kept.triangles) {
+    for (size_t corner = 3 * size_t{t}; corner < 3 * size_t{t} + 3; ++corner) {
+      const vec3 color = vec3_at(values, corner);
+      if (!is_finite(color)) ++repairs.colors;
+      colors.push_back(is_finite(color) ? color : vec3(0.0f));
+    }
+  }
+  return colors;
+}
+
+void copy_attributes(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs& repairs) {
+  mesh.uv_map = input.uv_map;
+  for (const AttributeInput& attribute : input.attributes) {
+    if (attribute.channels == 2) {
+      mesh.more_uv_maps.push_back({attribute.id, copy_uvs(attribute.values, kept, repairs), {}});
+    } else {
+      mesh.color_attributes.push_back({attribute.id, copy_colors(attribute.values, kept, repairs)});
     }
   }
 }
@@ -181,6 +208,7 @@ void warn_of(const Repairs& r, const MeshInput& input) {
   add(r.normals, "normals that are not finite or zero replaced by the face's");
   add(r.uvs, "UVs that are not finite replaced by (0, 0)");
   add(r.tangents, "tangents that are not finite or zero replaced");
+  add(r.colors, "colours that are not finite replaced by black");
   if (text.empty()) return;
   log::warning_once("Mesh '{}' ({} triangles): {}.", input.name, input.triangles.size() / 3, text);
 }
@@ -206,8 +234,9 @@ ValidMesh validate_mesh(const MeshInput& input) {
   }
   if (!input.corner_normals.empty()) copy_normals(input, kept, *mesh, repairs);
   if (input.motion_count > 0) copy_motion(input, kept, *mesh, repairs);
-  if (!input.corner_uvs.empty()) copy_uvs(input, kept, *mesh, repairs);
+  if (!input.corner_uvs.empty()) mesh->corner_uvs = copy_uvs(input.corner_uvs, kept, repairs);
   if (!input.corner_tangents.empty()) copy_tangents(input, kept, *mesh, repairs);
+  copy_attributes(input, kept, *mesh, repairs);
   std::vector<uint32_t> slots = copy_slots(input, kept, *mesh);
   warn_of(repairs, input);
   return {std::move(mesh), std::move(slots)};

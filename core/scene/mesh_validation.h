@@ -15,6 +15,13 @@ namespace kestrel {
 /// Object slots above this are refused.
 inline constexpr uint32_t kMaxMaterialSlot = 65535;
 
+/// As KestrelMeshAttribute.
+struct AttributeInput {
+  uint64_t id = 0;
+  int channels = 0;
+  std::span<const float> values;
+};
+
 /// As KestrelMesh; spans may be empty where that allows NULL.
 struct MeshInput {
   std::string name;
@@ -27,6 +34,8 @@ struct MeshInput {
   size_t motion_count = 0;                       // shapes at even steps of time
   std::span<const float> motion_positions;       // as `positions`, shape after shape
   std::span<const float> motion_corner_normals;  // as `corner_normals`, likewise; may be empty
+  uint64_t uv_map = 0;
+  std::vector<AttributeInput> attributes;
 };
 
 struct ValidMesh {
@@ -36,8 +45,8 @@ struct ValidMesh {
 
 /// Throws Error(invalid_argument) for an index or a slot out of range. Leaves triangles out that
 /// have a vertex beyond ±1e18 (or not finite), or so little area that a float holds no normal of
-/// theirs; refuses shapes of a motion that are not finite; repairs normals, UVs and tangents that
-/// are not finite. What it changed is warned of once, with counts.
+/// theirs; refuses shapes of a motion that are not finite; repairs normals, UVs, tangents and
+/// colours that are not finite. What it changed is warned of once, with counts.
 ValidMesh validate_mesh(const MeshInput& input);
 
 /// Embree reads whole 16-byte words, so 4 bytes past the last position must be readable.

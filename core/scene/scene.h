@@ -25,6 +25,19 @@ struct MeshShape {
 /// A mesh's shapes at even steps of time, two or more.
 using MeshMotion = std::vector<MeshShape>;
 
+/// A further UV map of a mesh; arrays as the mesh's own.
+struct UvMap {
+  uint64_t id = 0;
+  std::vector<vec2> corner_uvs;
+  std::vector<vec4> corner_tangents;  // empty: none
+};
+
+/// Colours of a mesh that multiply those of materials that ask for them.
+struct ColorAttribute {
+  uint64_t id = 0;
+  std::vector<vec3> corner_colors;  // linear
+};
+
 /// Triangles in object space. Arrays of corners hold three entries per triangle, in its order.
 struct Mesh {
   std::string name;
@@ -34,8 +47,39 @@ struct Mesh {
   std::vector<vec2> corner_uvs;              // empty: (0, 0)
   std::vector<vec4> corner_tangents;         // xyz unit, w = sign of the bitangent; empty: none
   std::vector<uint32_t> triangle_materials;  // slot of the object; empty: slot 0
+  uint64_t uv_map = 0;                       // id of corner_uvs, where they have one
+  std::vector<UvMap> more_uv_maps;
+  std::vector<ColorAttribute> color_attributes;
   Bounds bounds;                             // object space
   std::shared_ptr<const MeshMotion> motion;  // null: keeps its shape
+
+  /// The UVs that an id means, 0 being the mesh's own; empty, which reads as (0, 0), where the mesh
+  /// has no map of this id.
+  const std::vector<vec2>& uvs_of(uint64_t id) const {
+    if (id == 0 || id == uv_map) return corner_uvs;
+    const UvMap* map = find(more_uv_maps, id);
+    return map ? map->corner_uvs : kNoUvs;
+  }
+  /// The tangents along that map; empty: none.
+  const std::vector<vec4>& tangents_of(uint64_t id) const {
+    if (id == 0 || id == uv_map) return corner_tangents;
+    const UvMap* map = find(more_uv_maps, id);
+    return map ? map->corner_tangents : kNoTangents;
+  }
+  /// Null, which reads as black, where the mesh has no such attribute.
+  const ColorAttribute* colors_of(uint64_t id) const { return find(color_attributes, id); }
+
+ private:
+  static inline const std::vector<vec2> kNoUvs;
+  static inline const std::vector<vec4> kNoTangents;
+
+  template <typename Attribute>
+  static const Attribute* find(const std::vector<Attribute>& attributes, uint64_t id) {
+    for (const Attribute& attribute : attributes) {
+      if (attribute.id == id) return &attribute;
+    }
+    return nullptr;
+  }
 };
 
 enum class Extension : uint8_t { repeat, clamp, clip };
@@ -57,6 +101,17 @@ enum class AlphaMode : uint8_t {
   opaque,  // diffuse alpha is ignored
   mask,    // below the cutoff there is no surface
   blend,   // alpha is coverage: what it leaves shines straight through
+};
+
+/// A material's textures, in the order of all arrays over them.
+enum TextureSlot : uint8_t {
+  kEmissionTexture,
+  kAmbientTexture,
+  kDiffuseTexture,
+  kSpecularTexture,
+  kNormalTexture,
+  kOpticalTexture,
+  kTextureSlots
 };
 
 /// The paper's Table 1: each property is a colour times a texture (texture index or kNone).
@@ -81,8 +136,22 @@ struct Material {
   bool casts_shadow = true;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
-  int pass_index = 0;  // for compositing
+  int pass_index = 0;                    // for compositing
+  uint64_t uv_maps[kTextureSlots] = {};  // of the mesh, by texture; 0: its own
+  bool several_uv_maps = false;          // else all of uv_maps are the same
+  uint64_t tangent_map = 0;              // UV map along which the normal map lies
+  uint64_t emission_colors = 0;          // colour attributes of the mesh that multiply; 0: none
+  uint64_t ambient_colors = 0;
+  uint64_t diffuse_colors = 0;
 
+  bool has_colors() const { return (emission_colors | ambient_colors | diffuse_colors) != 0; }
+  /// Whether one UV map is not all that it takes from the mesh.
+  bool reads_attributes() const { return several_uv_maps || has_colors(); }
+  int texture(int slot) const {
+    const int textures[kTextureSlots] = {emission_texture, ambient_texture, diffuse_texture,
+                                         specular_texture, normal_texture,  optical_texture};
+    return textures[slot];
+  }
   bool reflective() const { return optical.x > 0.0f; }
   bool refractive() const { return optical.z < 1.0f || alpha_mode == AlphaMode::blend; }
   /// Whether some shadow ray may get past it or must look at its texture.

@@ -32,6 +32,40 @@ std::array<uint64_t, 6> texture_ids(const MaterialInput& m) {
           m.specular_texture, m.normal_texture,  m.optical_texture};
 }
 
+/// Slots without a texture take the UV map of the others, so that one map is known as one.
+void unite_uv_maps(Material& material) {
+  uint64_t first = 0;
+  bool any = false;
+  material.several_uv_maps = false;
+  for (int slot = 0; slot < kTextureSlots; ++slot) {
+    if (material.texture(slot) == kNone) continue;
+    const uint64_t map = material.uv_maps[slot];
+    if (any && map != first) material.several_uv_maps = true;
+    if (!any) first = map;
+    any = true;
+  }
+  for (int slot = 0; slot < kTextureSlots; ++slot) {
+    if (material.texture(slot) == kNone) material.uv_maps[slot] = first;
+  }
+}
+
+/// A mesh with tangents along a UV map; null where it has them already or lacks the map.
+std::shared_ptr<const Mesh> with_tangents(const Mesh& mesh, uint64_t uv_map) {
+  const bool own = uv_map == 0 || uv_map == mesh.uv_map;
+  if (!mesh.tangents_of(uv_map).empty()) return nullptr;
+  if (!own && mesh.uvs_of(uv_map).empty()) return nullptr;
+  auto out = std::make_shared<Mesh>(mesh);
+  pad_positions(*out);
+  std::vector<vec4> tangents = make_tangents(*out, out->uvs_of(uv_map));
+  if (own) out->corner_tangents = std::move(tangents);
+  for (UvMap& map : out->more_uv_maps) {
+    if (own || map.id != uv_map) continue;
+    map.corner_tangents = std::move(tangents);
+    break;
+  }
+  return out;
+}
+
 }  // namespace
 
 struct SceneBuilder::Assembly {
@@ -270,19 +304,20 @@ void SceneBuilder::add_materials(Assembly& out) {
     material.specular_texture = out.texture_index(textures_, input.specular_texture);
     material.normal_texture = out.texture_index(textures_, input.normal_texture);
     material.optical_texture = out.texture_index(textures_, input.optical_texture);
+    unite_uv_maps(material);
     out.material_indices[id] = static_cast<int>(out.scene->materials.size());
     out.scene->materials.push_back(std::move(material));
   }
 }
 
-int SceneBuilder::mesh_index(Assembly& out, uint64_t id, bool wants_tangents) {
+int SceneBuilder::mesh_index(Assembly& out, uint64_t id,
+                             const std::vector<uint64_t>& tangent_maps) {
   ValidMesh& valid = *meshes_.find(id);
   const auto known = out.mesh_indices.find(id);
-  if (wants_tangents && valid.mesh->corner_tangents.empty()) {
-    auto with_tangents = std::make_shared<Mesh>(*valid.mesh);
-    pad_positions(*with_tangents);
-    with_tangents->corner_tangents = make_tangents(*with_tangents);
-    valid.mesh = std::move(with_tangents);
+  for (const uint64_t map : tangent_maps) {
+    std::shared_ptr<const Mesh> changed = with_tangents(*valid.mesh, map);
+    if (!changed) continue;
+    valid.mesh = std::move(changed);
     if (known != out.mesh_indices.end()) out.scene->meshes[known->second] = valid.mesh;
   }
   if (known != out.mesh_indices.end()) return known->second;
@@ -317,15 +352,15 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
   }
   object.unit = out.unit_index(input.unit);
   Unit& unit = out.scene->units[object.unit];
-  bool wants_tangents = false;
+  std::vector<uint64_t> tangent_maps;
   for (const uint32_t slot : valid.used_slots) {
     const Material& material = out.scene->materials[object.materials[slot]];
     unit.reflective = unit.reflective || material.reflective();
     unit.refractive = unit.refractive || material.refractive();
-    wants_tangents = wants_tangents || material.normal_texture != kNone;
+    if (material.normal_texture != kNone) tangent_maps.push_back(material.tangent_map);
   }
   unit.bounds.extend(transformed(valid.mesh->bounds, input.world_from_object));
-  object.mesh = mesh_index(out, input.mesh, wants_tangents);
+  object.mesh = mesh_index(out, input.mesh, tangent_maps);
   out.scene->objects.push_back(std::move(object));
 }
 

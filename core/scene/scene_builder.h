@@ -78,7 +78,7 @@ class SceneBuilder {
   void add_object(Assembly& out, const ObjectEntry& entry);
   void apply_unit_settings(Assembly& out);
   void add_world(Assembly& out);
-  int mesh_index(Assembly& out, uint64_t id, bool wants_tangents);
+  int mesh_index(Assembly& out, uint64_t id, const std::vector<uint64_t>& tangent_maps);
 
   ItemStore<ValidMesh> meshes_;
   TextureStore textures_;

@@ -35,10 +35,10 @@ struct Triangle {
   vec3 p[3];
   vec2 uv[3];
 
-  Triangle(const Mesh& mesh, size_t t) {
+  Triangle(const Mesh& mesh, const std::vector<vec2>& corner_uvs, size_t t) {
     for (int c = 0; c < 3; ++c) {
       p[c] = mesh.positions[mesh.triangles[t][c]];
-      uv[c] = mesh.corner_uvs.empty() ? vec2(0.0f) : mesh.corner_uvs[3 * t + c];
+      uv[c] = corner_uvs.empty() ? vec2(0.0f) : corner_uvs[3 * t + c];
     }
   }
   /// Twice the signed area in UV space.
@@ -87,14 +87,15 @@ Corner corner_key(const Mesh& mesh, const Triangle& triangle, uint32_t index) {
 }
 
 /// Writes the tangents of the corners from `begin` on that share a frame; returns their end.
-size_t share_tangent(const Mesh& mesh, const std::vector<Corner>& corners, size_t begin,
+size_t share_tangent(const Mesh& mesh, const std::vector<vec2>& corner_uvs,
+                     const std::vector<Corner>& corners, size_t begin,
                      std::vector<vec4>& tangents) {
   vec3 sum(0.0f);
   vec3 normal(0.0f);
   size_t end = begin;
   for (; end < corners.size() && corners[end].same_frame(corners[begin]); ++end) {
     const uint32_t index = corners[end].index;
-    const Triangle triangle(mesh, index / 3);
+    const Triangle triangle(mesh, corner_uvs, index / 3);
     normal = corner_normal(mesh, triangle, index);
     sum += unit_across(triangle.along_u(), normal) * triangle.angle(static_cast<int>(index % 3));
   }
@@ -112,10 +113,10 @@ vec3 any_perpendicular(const vec3& normal) {
   return glm::normalize(glm::cross(glm::cross(normal, axis), normal));
 }
 
-std::vector<vec4> make_tangents(const Mesh& mesh) {
+std::vector<vec4> make_tangents(const Mesh& mesh, const std::vector<vec2>& corner_uvs) {
   std::vector<Corner> corners(3 * mesh.triangles.size());
   tbb::parallel_for(size_t{0}, mesh.triangles.size(), [&](size_t t) {
-    const Triangle triangle(mesh, t);
+    const Triangle triangle(mesh, corner_uvs, t);
     for (size_t c = 3 * t; c < 3 * t + 3; ++c) {
       corners[c] = corner_key(mesh, triangle, static_cast<uint32_t>(c));
     }
@@ -128,7 +129,7 @@ std::vector<vec4> make_tangents(const Mesh& mesh) {
     const size_t block_end = std::min(corners.size(), (block + 1) * kBlock);
     size_t begin = block * kBlock;
     while (begin > 0 && begin < block_end && corners[begin].same_frame(corners[begin - 1])) ++begin;
-    while (begin < block_end) begin = share_tangent(mesh, corners, begin, tangents);
+    while (begin < block_end) begin = share_tangent(mesh, corner_uvs, corners, begin, tangents);
   });
   return tangents;
 }

@@ -21,8 +21,18 @@ vec3 safe_normalize(const vec3& v, const vec3& fallback) {
   return length2 > 1e-30f ? v * glm::inversesqrt(length2) : fallback;
 }
 
-vec2 texture_uv(const Mesh& mesh, const Material& material, const SurfaceHit& hit) {
-  return material.offset + mesh_uv(mesh, hit) * material.tiling;
+vec2 texture_uv(const Mesh& mesh, const Material& material, TextureSlot slot,
+                const SurfaceHit& hit) {
+  const std::vector<vec2>& uvs = mesh.uvs_of(material.uv_maps[slot]);
+  const vec2 uv = uvs.empty() ? vec2(0.0f) : interpolate(uvs, hit);
+  return material.offset + uv * material.tiling;
+}
+
+/// Factor from the mesh's colour attribute of this id, 0 being none.
+vec3 corner_color(const Mesh& mesh, uint64_t id, const SurfaceHit& hit) {
+  if (id == 0) return vec3(1.0f);
+  const ColorAttribute* colors = mesh.colors_of(id);
+  return colors ? interpolate(colors->corner_colors, hit) : vec3(0.0f);
 }
 
 vec4 textured(const Scene& scene, const vec4& color, int texture, const vec2& uv) {
@@ -36,7 +46,9 @@ vec3 textured(const Scene& scene, const vec3& color, int texture, const vec2& uv
 vec3 mapped_normal(const Scene& scene, const Mesh& mesh, const Material& material,
                    const SurfaceHit& hit, const vec2& uv, const mat3& normal_from_object,
                    const mat4x3& world_from_object, const vec3& normal) {
-  const vec4 tangent_os = interpolate(mesh.corner_tangents, hit);
+  const std::vector<vec4>& tangents = mesh.tangents_of(material.tangent_map);
+  if (tangents.empty()) return normal;
+  const vec4 tangent_os = interpolate(tangents, hit);
   const vec3 along = mat3(world_from_object) * vec3(tangent_os);
   const vec3 tangent = safe_normalize(along - normal * glm::dot(normal, along), vec3(0.0f));
   if (tangent == vec3(0.0f)) return normal;
@@ -65,7 +77,11 @@ struct Point {
   const Object& object;
   const Mesh& mesh;
   const Material& material;
-  vec2 uv;  // of its textures
+  vec2 uv;  // of its textures, unless they have several maps
+
+  vec2 uv_of(TextureSlot slot) const {
+    return material.several_uv_maps ? texture_uv(mesh, material, slot, hit) : uv;
+  }
 };
 
 template <typename T>
@@ -87,7 +103,7 @@ Point find_point(const Scene& scene, const SurfaceHit& hit) {
   const Object& object = scene.objects[hit.object];
   const Mesh& mesh = *scene.meshes[object.mesh];
   const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
-  const Point point{hit, object, mesh, material, texture_uv(mesh, material, hit)};
+  const Point point{hit, object, mesh, material, texture_uv(mesh, material, kDiffuseTexture, hit)};
   const uvec3& triangle = mesh.triangles[hit.triangle];
   for (int c = 0; c < 3; ++c) prefetch(mesh.positions, triangle[c]);
   for (const int texture : {material.diffuse_texture, material.normal_texture,
@@ -95,13 +111,28 @@ Point find_point(const Scene& scene, const SurfaceHit& hit) {
     if (texture != kNone) prefetch_texels(*scene.textures[texture], point.uv);
   }
   if (material.normal_texture != kNone) {
-    prefetch(mesh.corner_tangents, 3 * static_cast<size_t>(hit.triangle));
+    prefetch(mesh.tangents_of(material.tangent_map), 3 * static_cast<size_t>(hit.triangle));
   }
   return point;
 }
 
+/// Diffuse, ambient and emission.
+void evaluate_colors(const Scene& scene, const Point& point, Surface& s) {
+  const Material& m = point.material;
+  s.diffuse = textured(scene, m.diffuse, m.diffuse_texture, point.uv_of(kDiffuseTexture));
+  s.ambient =
+      m.ambient_texture == m.diffuse_texture && m.ambient == vec3(m.diffuse) && !m.several_uv_maps
+          ? vec3(s.diffuse)
+          : textured(scene, m.ambient, m.ambient_texture, point.uv_of(kAmbientTexture));
+  s.emission = textured(scene, m.emission, m.emission_texture, point.uv_of(kEmissionTexture));
+  if (!m.has_colors()) return;
+  s.diffuse *= vec4(corner_color(point.mesh, m.diffuse_colors, point.hit), 1.0f);
+  s.ambient *= corner_color(point.mesh, m.ambient_colors, point.hit);
+  s.emission *= corner_color(point.mesh, m.emission_colors, point.hit);
+}
+
 Surface evaluate(const Scene& scene, const Point& point, const mat3& normal_from_object) {
-  const auto& [hit, object, mesh, material, uv] = point;
+  const auto& [hit, object, mesh, material, _] = point;
   const uvec3& triangle = mesh.triangles[hit.triangle];
   const vec3& a = mesh.positions[triangle.x];
   const vec3& b = mesh.positions[triangle.y];
@@ -116,18 +147,15 @@ Surface evaluate(const Scene& scene, const Point& point, const mat3& normal_from
   if (!mesh.corner_normals.empty()) {
     s.normal = safe_normalize(normal_from_object * interpolate(mesh.corner_normals, hit), s.normal);
   }
-  if (material.normal_texture != kNone && !mesh.corner_tangents.empty()) {
-    s.normal = mapped_normal(scene, mesh, material, hit, uv, normal_from_object,
-                             object.world_from_object, s.normal);
+  if (material.normal_texture != kNone) {
+    s.normal = mapped_normal(scene, mesh, material, hit, point.uv_of(kNormalTexture),
+                             normal_from_object, object.world_from_object, s.normal);
   }
-  s.diffuse = textured(scene, material.diffuse, material.diffuse_texture, uv);
-  s.ambient = material.ambient_texture == material.diffuse_texture &&
-                      material.ambient == vec3(material.diffuse)
-                  ? vec3(s.diffuse)
-                  : textured(scene, material.ambient, material.ambient_texture, uv);
-  s.emission = textured(scene, material.emission, material.emission_texture, uv);
-  s.specular = textured(scene, material.specular, material.specular_texture, uv);
-  s.optical = textured(scene, material.optical, material.optical_texture, uv);
+  evaluate_colors(scene, point, s);
+  s.specular =
+      textured(scene, material.specular, material.specular_texture, point.uv_of(kSpecularTexture));
+  s.optical =
+      textured(scene, material.optical, material.optical_texture, point.uv_of(kOpticalTexture));
   s.reflection_color = material.reflection_color;
   s.transmission_color = material.transmission_color;
   apply_alpha(scene, material, s);
@@ -153,7 +181,7 @@ void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_obj
 
 float evaluate_alpha(const Scene& scene, const Object& object, const SurfaceHit& hit) {
   const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
-  const vec2 uv = texture_uv(*scene.meshes[object.mesh], material, hit);
+  const vec2 uv = texture_uv(*scene.meshes[object.mesh], material, kDiffuseTexture, hit);
   return textured(scene, material.diffuse, material.diffuse_texture, uv).w;
 }
 
@@ -161,15 +189,18 @@ vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit) {
   const Object& object = scene.objects[hit.object];
   const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
   if (!material.casts_shadow) return vec3(1.0f);
-  const vec2 uv = texture_uv(*scene.meshes[object.mesh], material, hit);
-  const vec4 diffuse = textured(scene, material.diffuse, material.diffuse_texture, uv);
+  const Mesh& mesh = *scene.meshes[object.mesh];
+  const vec2 uv = texture_uv(mesh, material, kDiffuseTexture, hit);
+  vec4 diffuse = textured(scene, material.diffuse, material.diffuse_texture, uv);
+  diffuse *= vec4(corner_color(mesh, material.diffuse_colors, hit), 1.0f);
   float coverage = 1.0f;
   if (material.alpha_mode == AlphaMode::mask) {
     coverage = diffuse.w < material.alpha_cutoff ? 0.0f : 1.0f;
   } else if (material.alpha_mode == AlphaMode::blend) {
     coverage = diffuse.w;
   }
-  const float opacity = textured(scene, material.optical, material.optical_texture, uv).z;
+  const vec2 optical_uv = texture_uv(mesh, material, kOpticalTexture, hit);
+  const float opacity = textured(scene, material.optical, material.optical_texture, optical_uv).z;
   const vec3 through = (1.0f - opacity) * glm::max(1.0f - vec3(diffuse), 0.0f);
   return (1.0f - coverage) + coverage * through * material.transmission_color;
 }

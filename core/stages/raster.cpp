@@ -59,9 +59,10 @@ class RasterPasses {
   const Scene& scene() const;
   void begin_frame(const FrameInputs& inputs);
   std::vector<size_t> visible_objects(const FrameInputs& inputs) const;
-  void fill_gbuffer(const FrameInputs& inputs) const;
+  void fill_gbuffer(const FrameInputs& inputs);
   void light() const;
-  void draw_with_materials(size_t object) const;
+  GLuint program_for(const Material& material);
+  void draw_with_materials(size_t object);
   void draw_shape(size_t object) const;
 
   gl::Program gbuffer_program_ = gl::build_program(
@@ -70,6 +71,7 @@ class RasterPasses {
   gl::Program masked_program_ =
       gl::build_program("G-buffer, masked", {{GL_VERTEX_SHADER, "raster/gbuffer.vert"},
                                              {GL_FRAGMENT_SHADER, "raster/gbuffer_masked.frag"}});
+  std::optional<gl::Program> attributes_program_;  // made for the first material that needs it
   gl::Program lighting_program_ = gl::build_program(
       "lighting",
       {{GL_VERTEX_SHADER, "raster/lighting.vert"}, {GL_FRAGMENT_SHADER, "raster/lighting.frag"}});
@@ -108,7 +110,20 @@ std::vector<size_t> RasterPasses::visible_objects(const FrameInputs& inputs) con
   return out;
 }
 
-void RasterPasses::draw_with_materials(size_t index) const {
+GLuint RasterPasses::program_for(const Material& material) {
+  if (!material.reads_attributes()) {
+    return material.alpha_mode == AlphaMode::mask ? masked_program_.name()
+                                                  : gbuffer_program_.name();
+  }
+  if (!attributes_program_) {
+    attributes_program_ = gl::build_program(
+        "G-buffer, attributes", {{GL_VERTEX_SHADER, "raster/gbuffer_attributes.vert"},
+                                 {GL_FRAGMENT_SHADER, "raster/gbuffer_attributes.frag"}});
+  }
+  return attributes_program_->name();
+}
+
+void RasterPasses::draw_with_materials(size_t index) {
   const Object& object = scene().objects[index];
   const GpuMesh& mesh = gpu_scene.mesh(object.mesh);
   mesh.bind();
@@ -117,8 +132,8 @@ void RasterPasses::draw_with_materials(size_t index) const {
     const int material_index = gpu_scene.material_of(object, range.slot);
     const Material& material = scene().materials[material_index];
     gpu_scene.bind_material_textures(material);
-    glUseProgram(material.alpha_mode == AlphaMode::mask ? masked_program_.name()
-                                                        : gbuffer_program_.name());
+    mesh.bind_attributes(material);
+    glUseProgram(program_for(material));
     glUniform1ui(kMaterialIndex, static_cast<GLuint>(material_index));
     glDrawArrays(GL_TRIANGLES, range.first_vertex, range.vertex_count);
   }
@@ -133,7 +148,7 @@ void RasterPasses::draw_shape(size_t index) const {
   }
 }
 
-void RasterPasses::fill_gbuffer(const FrameInputs& inputs) const {
+void RasterPasses::fill_gbuffer(const FrameInputs& inputs) {
   const gl::DebugGroup group("G-buffer");
   targets_.begin_gbuffer();
   glEnable(GL_DEPTH_TEST);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fragment stage of the G-buffer pass (paper, listing 3). Inputs: the interpolated corner, the
 // material. Outputs: the targets of Table 2; their formats stand in core/stages/raster_targets.cpp.
-// Who includes it says by kMasked whether alpha cuts holes.
+// Who includes it says by kMasked whether alpha may cut holes, and by ATTRIBUTES whether the material
+// takes more from the mesh than one UV map.
 #include "common/frame.glsl"
 #include "common/octahedral.glsl"
 #include "raster/material.glsl"
@@ -16,6 +17,10 @@ layout(location = 1) in vec3 normal_ws;
 layout(location = 2) flat in vec3 face_normal_ws;
 layout(location = 3) in vec2 mesh_uv;
 layout(location = 4) in vec4 tangent_ws;
+#ifdef ATTRIBUTES
+layout(location = 5) in vec2 mesh_uvs[6];
+layout(location = 11) in vec3 mesh_colors[3];  // emission, ambient, diffuse
+#endif
 
 layout(location = 0) out vec4 out_position;
 layout(location = 1) out vec4 out_normals;
@@ -29,12 +34,24 @@ layout(location = 7) out uvec4 out_id;
 
 void main() {
   GpuMaterial m = materials[material_index];
-  vec2 uv = m.offset + mesh_uv * m.tiling;
-  MaterialSample s = sample_material(m, uv, frame.environment_ior);
-  if (kMasked && s.alpha < m.alpha_cutoff) discard;
+  vec2 uvs[6];
+  for (int unit = 0; unit < 6; ++unit) {
+#ifdef ATTRIBUTES
+    uvs[unit] = m.offset + mesh_uvs[unit] * m.tiling;
+#else
+    uvs[unit] = m.offset + mesh_uv * m.tiling;
+#endif
+  }
+  MaterialSample s = sample_material(m, uvs, frame.environment_ior);
+#ifdef ATTRIBUTES
+  s.emission *= mesh_colors[0];
+  s.ambient *= mesh_colors[1];
+  s.diffuse.rgb *= mesh_colors[2];
+#endif
+  if (kMasked && m.alpha_mode == kAlphaMask && s.alpha < m.alpha_cutoff) discard;
 
   vec3 geometric = safe_normalize(face_normal_ws, vec3(0.0, 0.0, 1.0));
-  vec3 normal = mapped_normal(m, uv, safe_normalize(normal_ws, geometric), tangent_ws);
+  vec3 normal = mapped_normal(m, uvs[kNormalUnit], safe_normalize(normal_ws, geometric), tangent_ws);
 
   out_position = vec4(position_ws, 1.0);
   out_normals = vec4(encode_octahedral(normal), encode_octahedral(geometric));

@@ -15,6 +15,7 @@ layout(binding = 4) uniform sampler2D normal_texture;
 layout(binding = 5) uniform sampler2D optical_texture;
 
 const uint kNormalUnit = 4u;
+const uint kAlphaMask = 1u;
 const uint kAlphaBlend = 2u;
 // What an opaque texel may come to after filtering.
 const float kOpaque = 1.0 - 1e-6;
@@ -34,13 +35,14 @@ vec4 textured(GpuMaterial m, vec4 color, uint unit, sampler2D image, vec2 uv) {
   return has_texture(m, unit) ? color * textureLod(image, uv, 0.0) : color;
 }
 
-MaterialSample sample_material(GpuMaterial m, vec2 uv, float environment_ior) {
+// `uvs`: by texture unit.
+MaterialSample sample_material(GpuMaterial m, vec2 uvs[6], float environment_ior) {
   MaterialSample s;
-  s.emission = textured(m, vec4(m.emission, 1.0), 0u, emission_texture, uv).rgb;
-  s.ambient = textured(m, vec4(m.ambient, 1.0), 1u, ambient_texture, uv).rgb;
-  s.diffuse = textured(m, m.diffuse, 2u, diffuse_texture, uv);
-  s.specular = textured(m, m.specular, 3u, specular_texture, uv);
-  s.optical = textured(m, vec4(m.optical, 1.0), 5u, optical_texture, uv).rgb;
+  s.emission = textured(m, vec4(m.emission, 1.0), 0u, emission_texture, uvs[0]).rgb;
+  s.ambient = textured(m, vec4(m.ambient, 1.0), 1u, ambient_texture, uvs[1]).rgb;
+  s.diffuse = textured(m, m.diffuse, 2u, diffuse_texture, uvs[2]);
+  s.specular = textured(m, m.specular, 3u, specular_texture, uvs[3]);
+  s.optical = textured(m, vec4(m.optical, 1.0), 5u, optical_texture, uvs[5]).rgb;
   s.alpha = s.diffuse.a;
   if (m.alpha_mode != kAlphaBlend) s.diffuse.a = 1.0;
   // What alpha alone leaves uncovered shines straight through.

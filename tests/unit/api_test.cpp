@@ -401,6 +401,23 @@ TEST_F(Api, UnknownIdsAreErrors) {
   expect_invalid(kestrelCommitScene(scene), {"object", "mesh 8"});
 }
 
+TEST_F(Api, AttributesOfAMeshAreChecked) {
+  const float uvs[12] = {}, colors[18] = {};
+  KestrelMeshAttribute attributes[] = {{1, 2, uvs}, {1, 3, colors}};
+  KestrelMesh mesh = square();
+  mesh.attribute_count = 2;
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"attributes", "NULL"});
+  mesh.attributes = attributes;
+  expect_ok(kestrelSetMesh(scene, 1, &mesh));
+  attributes[1].channels = 4;
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"square", "4 channels"});
+  attributes[1].channels = 3;
+  attributes[0].values = nullptr;
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"values", "NULL"});
+  attributes[0] = {0, 2, uvs};
+  expect_invalid(kestrelSetMesh(scene, 1, &mesh), {"square", "0"});
+}
+
 TEST_F(Api, NumbersThatAreNotFiniteAreErrors) {
   const float nan = std::nanf("");
   KestrelCamera camera = camera_above();

@@ -45,7 +45,7 @@ struct Square {
   std::vector<uint32_t> slots;
 
   MeshInput input(const std::string& name = "square") const {
-    return {name, positions, triangles, normals, uvs, tangents, slots};
+    return {name, positions, triangles, normals, uvs, tangents, slots, 0, {}};
   }
 };
 

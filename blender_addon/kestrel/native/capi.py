@@ -44,6 +44,14 @@ class Cancelled(KestrelError):
     """The frame was given up because someone asked for it."""
 
 
+class MeshAttribute(Structure):
+    _fields_ = [
+        ("id", c_uint64),
+        ("channels", c_int32),
+        ("values", float_p),
+    ]
+
+
 class Mesh(Structure):
     _fields_ = [
         ("name", c_char_p),
@@ -58,6 +66,9 @@ class Mesh(Structure):
         ("motion_count", c_size_t),
         ("motion_positions", float_p),
         ("motion_corner_normals", float_p),
+        ("uv_map", c_uint64),
+        ("attribute_count", c_size_t),
+        ("attributes", POINTER(MeshAttribute)),
     ]
 
 
@@ -93,6 +104,11 @@ class Material(Structure):
         ("alpha_mode", c_int32),
         ("alpha_cutoff", c_float),
         ("pass_index", c_int32),
+        ("uv_maps", c_uint64 * 6),
+        ("tangent_map", c_uint64),
+        ("emission_attribute", c_uint64),
+        ("ambient_attribute", c_uint64),
+        ("diffuse_attribute", c_uint64),
     ]
 
 
@@ -343,10 +359,15 @@ class Scene:
             self._handle = None
 
     def set_mesh(self, ident, name, positions, triangles, corner_normals=None, corner_uvs=None,
-                 triangle_materials=None, motion=None):
+                 triangle_materials=None, motion=None, uv_map=0, attributes=()):
         """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,). `motion`:
-        positions and corner normals, or None for those, of several shapes one after the other."""
+        positions and corner normals, or None for those, of several shapes one after the other.
+        `uv_map`: the id of the UVs; `attributes`: [(id, float32 (3T, 2) for UVs or (3T, 3) for
+        colours), ...]."""
         moved, moved_normals = motion or (None, None)
+        more = (MeshAttribute * len(attributes))(*(
+            MeshAttribute(ident, values.shape[1], pointer(values, float_p, np.float32))
+            for ident, values in attributes))
         mesh = Mesh(
             encode(name), len(positions), pointer(positions, float_p, np.float32),
             len(triangles), pointer(triangles, uint32_p, np.uint32),
@@ -354,7 +375,8 @@ class Scene:
             pointer(corner_uvs, float_p, np.float32), None,
             pointer(triangle_materials, uint32_p, np.uint32),
             0 if moved is None else len(moved) // len(positions),
-            pointer(moved, float_p, np.float32), pointer(moved_normals, float_p, np.float32))
+            pointer(moved, float_p, np.float32), pointer(moved_normals, float_p, np.float32),
+            uv_map, len(more), more)
         self.library.check(self.c.kestrelSetMesh(self.handle, ident, byref(mesh)))
 
     def set_texture_file(self, ident, path, options):

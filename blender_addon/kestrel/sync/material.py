@@ -19,11 +19,16 @@ from dataclasses import dataclass, field, replace
 from .. import compat
 from ..native import capi
 from . import nodes
+from .attributes import RENDER_COLOR, attribute_id
 from .image import cached_mean, mean_color, sync_texture
 from .nodes import BLACK, WHITE, Value, sum_values
 
 MIRROR_ROUGHNESS = 0.05  # below, a reflection is taken for exact
 MAX_EXPONENT = 255.0     # Table 1
+# The library's textures, and those that nodes can reach.
+SLOTS = ("emission", "ambient", "diffuse", "specular", "normal", "optical")
+TEXTURED = ("emission", "ambient", "diffuse", "normal")
+COLORED = ("emission", "ambient", "diffuse")
 SUBSTITUTES = ("TRANSLUCENT", "SUBSURFACE_SCATTERING", "BSDF_VELVET", "BSDF_SHEEN", "BSDF_TOON",
                "BSDF_HAIR", "BSDF_HAIR_PRINCIPLED", "EEVEE_SPECULAR")
 
@@ -45,6 +50,7 @@ class Surface:
     transparent: bool = False   # only lets light through: a side of a mix that may become a mask
     normal: Value = field(default_factory=Value)
     normal_strength: float = 1.0
+    tangent_map: str = ""       # UV map along which the normal map lies; empty: the render map
 
 
 # ---- pieces ----------------------------------------------------------------------------------
@@ -111,7 +117,8 @@ def add(a, b):
                                   b.reflectivity),
         transmission_color=weighted(a.transmission_color, b.transmission_color, clear_a, clear_b),
         masked=a.masked or b.masked,
-        normal=mapped.normal, normal_strength=mapped.normal_strength)
+        normal=mapped.normal, normal_strength=mapped.normal_strength,
+        tangent_map=mapped.tangent_map)
 
 
 def scaled(surface, factor):
@@ -166,6 +173,8 @@ class Shaders:
 
     def _tint(self, value, node):
         """One colour for rays, which cannot be tinted point by point."""
+        if value.attribute is not None:
+            self.reader.unsupported(node, "the mesh's colours do not tint its rays")
         if value.texture is None:
             return value.color
         self.reader.unsupported(
@@ -186,7 +195,7 @@ class Shaders:
         value = self.reader.color(above.inputs["Color"], above_stack)
         if value.texture is None:
             return surface
-        return replace(surface, normal=value,
+        return replace(surface, normal=value, tangent_map=above.uv_map,
                        normal_strength=self.reader.number(above.inputs["Strength"], above_stack))
 
     def _diffuse(self, node, stack, _depth):
@@ -354,10 +363,16 @@ def describe(export, material, surface):
     item.optical[:] = (surface.reflectivity, surface.ior, surface.opacity)
     item.reflection_color[:] = surface.reflection_color
     item.transmission_color[:] = surface.transmission_color
-    for name in ("emission", "ambient", "diffuse", "normal"):
+    for name in TEXTURED:
         value = getattr(surface, name)
         if value.texture:
             setattr(item, f"{name}_texture", sync_texture(export, value.texture))
+            item.uv_maps[SLOTS.index(name)] = attribute_id(value.texture.uv_map)
+    item.tangent_map = attribute_id(surface.tangent_map)
+    for name in COLORED:
+        attribute = getattr(surface, name).attribute
+        if attribute is not None:
+            setattr(item, f"{name}_attribute", attribute_id(attribute or RENDER_COLOR))
     item.normal_strength = surface.normal_strength
     item.tiling[:], item.offset[:] = _one_mapping(surface, material, export.warn)
     item.casts_shadow = getattr(getattr(material, "kestrel", None), "casts_shadow", True)
@@ -369,10 +384,22 @@ def describe(export, material, surface):
     return item
 
 
+def wanted_attributes(surface):
+    """What a Surface takes from the mesh by name: sorted ("color" or "uv", name) pairs."""
+    wanted = {("uv", getattr(surface, name).texture.uv_map)
+              for name in TEXTURED if getattr(surface, name).texture}
+    wanted |= {("color", getattr(surface, name).attribute)
+               for name in COLORED if getattr(surface, name).attribute is not None}
+    if surface.normal.texture:
+        wanted.add(("uv", surface.tangent_map))
+    return tuple(sorted(wanted - {("uv", "")}))
+
+
 def sync_material(export, material):
-    """Id of a material in the core; 0, the default grey, for None."""
+    """(id, wanted attributes) of a material in the core; the id is 0, the default grey, for
+    None."""
     if material is None:
-        return 0
+        return 0, ()
     key = compat.datablock_key(material)
     if key not in export.materials:
         surface = read_surface(material, export.environment_ior, export.warn,
@@ -381,5 +408,5 @@ def sync_material(export, material):
         ident = export.new_id(capi.KIND_MATERIAL, key)
         export.put(capi.KIND_MATERIAL, ident, capi.content(item),
                    lambda: export.scene.set_material(ident, item))
-        export.materials[key] = ident
+        export.materials[key] = ident, wanted_attributes(surface)
     return export.materials[key]

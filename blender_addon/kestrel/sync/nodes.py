@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading node trees: what feeds a socket, as a constant colour times at most one image.
+"""Reading node trees: what feeds a socket, as a constant colour times at most one image and at most
+one colour attribute of the mesh.
 
 Reroutes, muted nodes and groups are seen through. A node that cannot be followed is reported once,
 by material and node; then the first image found upstream stands in for it, else the socket's own
@@ -34,19 +35,34 @@ class Texture:
     tiling: tuple = (1.0, 1.0)
     offset: tuple = (0.0, 0.0)
     mask: Mask = None
+    uv_map: str = ""  # empty: the one that rendering uses
 
 
 @dataclass(frozen=True)
 class Value:
-    """A colour times the texture's colour."""
+    """A colour times the texture's colour times the mesh's."""
     color: tuple = BLACK
     texture: Texture = None
+    attribute: str = None  # name of a colour attribute; empty: the one that rendering uses
+
+    @property
+    def varies(self):
+        return self.texture is not None or self.attribute is not None
 
     def scaled(self, factor):
-        """Times a number or a colour; black has no texture."""
+        """Times a number or a colour; black has no texture and no attribute."""
         factors = factor if isinstance(factor, tuple) else (factor,) * 3
         color = tuple(c * f for c, f in zip(self.color, factors))
-        return replace(self, color=color, texture=self.texture if any(color) else None)
+        return replace(self, color=color) if any(color) else Value()
+
+    def times(self, other):
+        """The product, or None where it has two textures or two attributes."""
+        if (self.texture and other.texture) or (
+                self.attribute is not None and other.attribute is not None):
+            return None
+        attribute = other.attribute if self.attribute is None else self.attribute
+        return Value(WHITE, self.texture or other.texture, attribute).scaled(
+            tuple(a * b for a, b in zip(self.color, other.color)))
 
     @property
     def luminance(self):
@@ -150,6 +166,9 @@ class Reader:
             return Value(constant(node.outputs[0].default_value))
         if node.type == "TEX_IMAGE" and origin.name == "Color":
             return Value(WHITE, self.texture(node, above)) if node.image else Value(BLACK)
+        attribute = color_attribute(node, origin)
+        if attribute is not None:
+            return Value(WHITE, attribute=attribute)
         if node.type in ("MIX_RGB", "MIX"):
             mixed = self._mixed_color(node, above)
             if mixed is not None:
@@ -180,11 +199,9 @@ class Reader:
         a, b = (self.color(socket, stack) for socket in enabled[1:])
         if node.blend_type == "MIX":
             return sum_values(a.scaled(1.0 - factor), b.scaled(factor))
-        if b.texture is None:
+        if not b.varies:
             return a.scaled(tuple(1.0 - factor + factor * c for c in b.color))
-        if factor == 1.0 and a.texture is None:
-            return b.scaled(a.color)
-        return None
+        return a.times(b) if factor == 1.0 else None
 
     # ---- images ----
 
@@ -196,25 +213,29 @@ class Reader:
         if extension is None:
             self.unsupported(node, "its image repeats instead of being mirrored")
             extension = capi.EXTENSION_REPEAT
-        tiling, offset = self._mapping(node.inputs["Vector"], stack)
-        return Texture(node.image, node.interpolation == "Closest", extension, tiling, offset)
+        tiling, offset, uv_map = self._mapping(node.inputs["Vector"], stack)
+        return Texture(node.image, node.interpolation == "Closest", extension, tiling, offset,
+                       uv_map=uv_map)
 
     def _mapping(self, socket, stack):
-        """Tiling and offset of the UV map that a vector input describes."""
+        """Tiling and offset of the UV map that a vector input describes, and its name."""
         node, origin, above = self.source(socket, stack)
         if node is None:
-            return (1.0, 1.0), (0.0, 0.0)
+            return (1.0, 1.0), (0.0, 0.0), ""
         if node.type == "MAPPING":
             return self._mapping_node(node, above)
         if node.type == "TEX_COORD" and origin.name == "UV":
-            return (1.0, 1.0), (0.0, 0.0)
+            return (1.0, 1.0), (0.0, 0.0), ""
         if node.type == "UVMAP" and not node.from_instancer:
-            return (1.0, 1.0), (0.0, 0.0)
+            return (1.0, 1.0), (0.0, 0.0), node.uv_map
+        if node.type == "ATTRIBUTE" and origin.name in ("Color", "Vector") and (
+                node.attribute_type == "GEOMETRY" and node.attribute_name):
+            return (1.0, 1.0), (0.0, 0.0), node.attribute_name
         self.unsupported(node, "the UV map is used instead")
-        return (1.0, 1.0), (0.0, 0.0)
+        return (1.0, 1.0), (0.0, 0.0), ""
 
     def _mapping_node(self, node, stack):
-        tiling, offset = self._mapping(node.inputs["Vector"], stack)
+        tiling, offset, uv_map = self._mapping(node.inputs["Vector"], stack)
         scale = [self._vector(node, "Scale", stack)[i] for i in range(2)]
         place = [0.0, 0.0]
         if node.vector_type in ("POINT", "TEXTURE"):
@@ -225,7 +246,7 @@ class Reader:
             scale = [1.0 / s if s else 0.0 for s in scale]
             place = [-p * s for p, s in zip(place, scale)]
         return (tuple(t * s for t, s in zip(tiling, scale)),
-                tuple(o * s + p for o, s, p in zip(offset, scale, place)))
+                tuple(o * s + p for o, s, p in zip(offset, scale, place)), uv_map)
 
     def _vector(self, node, name, stack):
         socket = node.inputs.get(name)
@@ -238,15 +259,25 @@ class Reader:
         return constant(origin.default_value)
 
 
+def color_attribute(node, output):
+    """Name of the mesh's colour attribute that a node's output brings, or None."""
+    if node.type == "VERTEX_COLOR" and output.name == "Color":
+        return node.layer_name
+    if node.type == "ATTRIBUTE" and output.name in ("Color", "Vector", "Fac") and (
+            node.attribute_type == "GEOMETRY" and node.attribute_name):
+        return node.attribute_name
+    return None
+
+
 def sum_values(a, b):
-    """a + b. Exact unless both have different textures: then the brighter one's is kept and the
-    other joins as a constant of mean grey (half)."""
-    if a.texture == b.texture:
-        return Value(tuple(x + y for x, y in zip(a.color, b.color)), a.texture)
+    """a + b. Exact unless they vary differently: then the brighter one's texture and attribute are
+    kept and the other joins as a constant of mean grey (half)."""
+    if a.texture == b.texture and a.attribute == b.attribute:
+        return replace(a, color=tuple(x + y for x, y in zip(a.color, b.color)))
     if not any(a.color):
         return b
     if not any(b.color):
         return a
-    main, other = (a, b) if a.texture and (not b.texture or a.luminance >= b.luminance) else (b, a)
-    weight = 0.5 if other.texture else 1.0
+    main, other = (a, b) if a.varies and (not b.varies or a.luminance >= b.luminance) else (b, a)
+    weight = 0.5 if other.varies else 1.0
     return replace(main, color=tuple(x + weight * y for x, y in zip(main.color, other.color)))

@@ -103,11 +103,11 @@ class Objects:
         key = (self.key_of(original), obj.data.as_pointer(), with_strands)
         found = self.shapes.get(key)
         if found is None:
-            slots = self.slots(obj)  # first: the library decodes their images meanwhile
+            slots, wanted = self.slots(obj)  # first: the library decodes their images meanwhile
             if obj.type == "CURVES":
                 mesh = sync_curves(self.export, obj, self.scene)
             else:
-                mesh = sync_mesh(self.export, obj)
+                mesh = sync_mesh(self.export, obj, wanted)
             identity = identity_of(obj)
             parts = [(b"", mesh, slots, identity)]
             if with_strands and obj.particle_systems:
@@ -126,10 +126,13 @@ class Objects:
         return found
 
     def slots(self, obj):
+        """Material ids by slot, and what these materials want of the mesh."""
         used = [self.override or slot.material for slot in obj.material_slots]
         if not used and self.override:
             used = [self.override]
-        return tuple(sync_material(self.export, item) for item in used)
+        sent = [sync_material(self.export, item) for item in used]
+        return (tuple(ident for ident, _ in sent),
+                tuple(sorted({name for _, wanted in sent for name in wanted})))
 
     def unit_settings(self, ident, unit, owner):
         """The owner's settings. Units that always had the defaults need no calls."""

@@ -104,6 +104,13 @@ KESTREL_API KestrelScene kestrelNewScene(KestrelDevice device);
 KESTREL_API void kestrelRetainScene(KestrelScene scene);
 KESTREL_API void kestrelReleaseScene(KestrelScene scene);
 
+/* Values at the corners for materials that ask for them by id. */
+typedef struct KestrelMeshAttribute {
+  uint64_t id;         /* not 0; one of each kind per mesh: of equal ones the first counts */
+  int32_t channels;    /* 2: a UV map, 3: linear colours */
+  const float* values; /* `channels` per corner */
+} KestrelMeshAttribute;
+
 typedef struct KestrelMesh {
   const char* name;
   size_t vertex_count;
@@ -119,6 +126,9 @@ typedef struct KestrelMesh {
                                          What the steps are says kestrelSetObjectMotion() */
   const float* motion_positions;      /* as `positions`, shape after shape */
   const float* motion_corner_normals; /* as `corner_normals`, likewise; NULL: flat, or as those */
+  uint64_t uv_map; /* id by which materials may also ask for corner_uvs; 0: none */
+  size_t attribute_count;
+  const KestrelMeshAttribute* attributes; /* further UV maps, and colours */
 } KestrelMesh;
 
 /* At most 2^29 vertices and as many triangles; none is fine. Index out of range: error. Triangles
@@ -186,6 +196,13 @@ typedef struct KestrelMaterial {
   int32_t alpha_mode; /* KestrelAlphaMode */
   float alpha_cutoff; /* 0…1, for KESTREL_ALPHA_MASK */
   int32_t pass_index; /* for the pass MaterialIndex */
+  /* What the mesh brings, by id. UV maps: of each texture above, in their order, 0 being the
+   * mesh's corner_uvs; (0, 0) where the mesh has no such map. */
+  uint64_t uv_maps[6];
+  uint64_t tangent_map;        /* UV map along which the normal map lies */
+  uint64_t emission_attribute; /* colours that multiply; 0: none; black where the mesh has none */
+  uint64_t ambient_attribute;
+  uint64_t diffuse_attribute;
 } KestrelMaterial;
 
 /* Grey, matte, opaque: diffuse and ambient 0.8, no specular, index of refraction 1. */
