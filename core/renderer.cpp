@@ -82,6 +82,7 @@ struct Renderer::Impl {
   }
 
   void render(const Progress& progress);
+  void choose_primary();
   void begin_film();
   void prepare();
   void show_moment(int sample);
@@ -98,6 +99,8 @@ struct Renderer::Impl {
   void trace(const FrameInputs& inputs, Workspace& work);
   void blend(const FrameInputs& inputs, Workspace& work);
   void report(float sample_share);
+  void tell(float share, const std::string& status);
+  void check_cancelled() const;
   void finish();
 
   std::shared_ptr<Device> device;
@@ -111,14 +114,17 @@ struct Renderer::Impl {
   TraceStage trace_stage{embree_tracer};
   BlendStage blend_stage;
   std::vector<std::string> passes;
+  Region wanted_region;
   std::atomic<bool> cancel_requested = false;
 
   // The frame under way.
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Scene> moment;  // the scene while a sample is taken
   bool moving = false;                  // every sample has a moment of its own
-  int width = 0;
+  int width = 0;                        // of the picture
   int height = 0;
+  Region region;  // of it that is rendered
+  bool rasterises = false;
   tbb::enumerable_thread_specific<Workspace> workspaces;
   Selection selection;
   mutable std::mutex film_mutex;  // held while `film` or `finished` is replaced or copied
@@ -169,13 +175,27 @@ void Renderer::render_frame(std::shared_ptr<const Scene> scene, int width, int h
          height);
   }
   Impl& r = *impl_;
+  const Region whole{0, 0, width, height};
+  const Region region = r.wanted_region.width > 0 ? r.wanted_region : whole;
+  if (region.x < 0 || region.y < 0 || region.height < 1 || region.width > width - region.x ||
+      region.height > height - region.y) {
+    fail(ErrorCode::invalid_argument,
+         "The region of {} x {} pixels at ({}, {}) does not lie in the picture of {} x {}. Choose "
+         "one that does.",
+         region.width, region.height, region.x, region.y, width, height);
+  }
   r.cancel_requested = false;
   r.scene = std::move(scene);
   r.width = width;
   r.height = height;
+  r.region = region;
   const int threads = r.scene->settings.threads;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] { r.render(progress); });
+}
+
+void Renderer::set_region(const Region& region) {
+  impl_->wanted_region = region;
 }
 
 void Renderer::set_passes(const std::vector<std::string>& names) {
@@ -187,10 +207,12 @@ void Renderer::Impl::render(const Progress& report_to) {
   stats = {};
   progress = &report_to;
   last_report = 0;
+  samples_done = 0;
   for (Workspace& work : workspaces) work.reset();
-  begin_film();
   {
     const Stopwatch watch(stats.frame_ms);
+    choose_primary();
+    begin_film();
     prepare();
     for (samples_done = 0; samples_done < scene->settings.samples; ++samples_done) {
       render_sample(samples_done);
@@ -199,8 +221,29 @@ void Renderer::Impl::render(const Progress& report_to) {
   finish();
 }
 
+/// The rasteriser draws a part of the picture as a whole one, through a smaller window.
+void Renderer::Impl::choose_primary() {
+  rasterises = use_raster();
+  if (!rasterises || (region.width == width && region.height == height)) return;
+  const auto cropped = std::make_shared<Scene>(*scene);
+  const auto crop = [this](Camera& camera) {
+    const float x = (camera.right - camera.left) / static_cast<float>(width);
+    const float y = (camera.top - camera.bottom) / static_cast<float>(height);
+    camera.right = camera.left + x * static_cast<float>(region.x + region.width);
+    camera.left += x * static_cast<float>(region.x);
+    camera.top = camera.bottom + y * static_cast<float>(region.y + region.height);
+    camera.bottom += y * static_cast<float>(region.y);
+  };
+  crop(cropped->camera);
+  for (Camera& camera : cropped->camera_motion) crop(camera);
+  scene = cropped;
+  width = region.width;
+  height = region.height;
+  region = {0, 0, width, height};
+}
+
 void Renderer::Impl::begin_film() {
-  Film empty(width, height, passes, *scene);
+  Film empty(region, passes, *scene);
   const std::lock_guard lock(film_mutex);
   film = std::move(empty);
 }
@@ -208,9 +251,12 @@ void Renderer::Impl::begin_film() {
 void Renderer::Impl::render_sample(int sample) {
   const Settings& settings = scene->settings;
   show_moment(sample);
-  FrameInputs inputs{*moment, width, height,
+  FrameInputs inputs{*moment,
+                     width,
+                     height,
                      subpixel_offset(settings, settings.first_sample + sample),
-                     settings.budget_ms / static_cast<float>(settings.samples)};
+                     settings.budget_ms / static_cast<float>(settings.samples),
+                     region};
   inputs.lens = {lens_open(), lens_position(settings.first_sample + sample), !raster};
   inputs.keep_uv = film.has("UV");
   inputs.keep_behind = film.wants_layers();
@@ -249,6 +295,7 @@ void Renderer::Impl::render_tiles(const FrameInputs& picture, int sample) {
 /// The four stages, and what becomes of their results.
 void Renderer::Impl::render_region(const FrameInputs& inputs, int sample, Workspace& work) {
   rasterize(inputs, work);
+  check_cancelled();
   select(inputs, sample, work);
   if (sample == 0 && film.has("Vector")) motion_vectors.run(inputs, work.gbuffer);
   trace(inputs, work);
@@ -271,7 +318,7 @@ bool Renderer::Impl::whole_picture() const {
 void Renderer::Impl::prepare() {
   const Stopwatch watch(stats.stages.update);
   moving = scene->settings.motion_blur && anything_moves(*scene);
-  if (!use_raster()) {
+  if (!rasterises) {
     raster.reset();
   } else if (!raster) {
     raster = std::make_unique<RasterStage>(device->gl());
@@ -285,7 +332,10 @@ void Renderer::Impl::show_moment(int sample) {
   if (sample > 0 && !moving) return;
   const Stopwatch watch(stats.stages.update);
   moment = moving ? scene_at(*scene, shutter_time(scene->settings.first_sample + sample)) : scene;
-  rt_scene.update(moment);
+  rt_scene.update(moment, [this] {
+    tell(0.0f, "Building");
+    return !cancel_requested;
+  });
   if (raster) raster->update(moment);
 }
 
@@ -363,20 +413,27 @@ void Renderer::Impl::blend(const FrameInputs& inputs, Workspace& work) {
   blend_stage.run(inputs, work.gbuffer, selection, work.effects, work.combined);
 }
 
-/// Tells how far the frame is, now and then; `sample_share` of the sample under way is done.
+/// `sample_share` of the sample under way is done.
 void Renderer::Impl::report(float sample_share) {
+  const int samples = scene->settings.samples;
+  const float share =
+      (static_cast<float>(samples_done) + sample_share) / static_cast<float>(samples);
+  tell(share, fmt::format("Sample {}/{}", samples_done + 1, samples));
+}
+
+/// Tells how far the frame is, now and then.
+void Renderer::Impl::tell(float share, const std::string& status) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   auto last = last_report.load();
   if (!*progress || now - decltype(now)(last) < kReportInterval ||
       !last_report.compare_exchange_strong(last, now.count())) {
     return;
   }
-  const int samples = scene->settings.samples;
-  const float share =
-      (static_cast<float>(samples_done) + sample_share) / static_cast<float>(samples);
-  if (!(*progress)(share, fmt::format("Sample {}/{}", samples_done + 1, samples))) {
-    cancel_requested = true;
-  }
+  if (!(*progress)(share, status)) cancel_requested = true;
+}
+
+void Renderer::Impl::check_cancelled() const {
+  if (cancel_requested) fail(ErrorCode::cancelled, "The render was cancelled.");
 }
 
 /// Publishes the frame, and lets the heuristic learn from it.
@@ -405,8 +462,9 @@ void Renderer::Impl::finish() {
   log::info(
       "{}x{}, {} samples, primary {}: {:.1f} ms (update {:.1f}, raster {:.1f}, heuristic "
       "{:.1f}, trace {:.1f}, blend {:.1f})",
-      width, height, stats.samples, stats.primary, stats.frame_ms, stats.stages.update,
-      stats.stages.raster, stats.stages.heuristic, stats.stages.trace, stats.stages.blend);
+      region.width, region.height, stats.samples, stats.primary, stats.frame_ms,
+      stats.stages.update, stats.stages.raster, stats.stages.heuristic, stats.stages.trace,
+      stats.stages.blend);
 }
 
 }  // namespace kestrel

@@ -45,6 +45,10 @@ class Renderer {
   void render_frame(std::shared_ptr<const Scene> scene, int width, int height,
                     const Progress& progress);
 
+  /// What the next frames render of their pictures, in pixels; of no width: all, as at first. Films
+  /// then have its size.
+  void set_region(const Region& region);
+
   /// Passes that the next frames keep, by name; at first all. Throws Error(invalid_argument).
   void set_passes(const std::vector<std::string>& names);
 

@@ -107,7 +107,8 @@ def _read_all(*_arguments):
     viewport.read_all()
 
 
-HANDLERS = {"load_pre": _forget_sessions, "undo_post": _read_all, "redo_post": _read_all}
+HANDLERS = {**final_render.HANDLERS, "load_pre": _forget_sessions, "undo_post": _read_all,
+            "redo_post": _read_all}
 
 
 def register():

@@ -7,21 +7,23 @@ animation, and longer where the artist wants persistent data.
 """
 
 import contextlib
-import threading
+import json
+import os
 import time
 
 import bpy
+from bpy.app.handlers import persistent
 
-from . import compat, icons, log, passes, session, sync
+from . import compat, icons, log, passes, session, stamp
+from .display import Display, Teller
 from .native import capi
-from .progress import Memory, Progress, status_text
+from .progress import Progress
 from .sync import motion
 
-POLL_S = 0.02          # how often Escape is looked for
-TELL_EVERY_S = 0.1     # at most so often is the status bar written
-PRINT_EVERY_S = 1.0    # the same on a terminal, while only numbers change
-SHOW_EVERY_S = 0.3     # at most so often is the picture shown as it forms
-SHOW_SHARE = 0.01      # of the time may go into that
+POLL_S = 0.02  # how often Escape is looked for
+GRACE_S = 0.1  # the library's to stop; then Blender no longer waits for it
+
+_keys = set()  # of the sessions of final renders
 
 
 def session_key(scene, view_layer):
@@ -36,80 +38,38 @@ def layer_place(scene, view_layer):
     return names.index(view_layer.name), len(names)
 
 
-class Frame(threading.Thread):
-    """A frame being rendered: the library works on this thread while Blender's one reports."""
+class Frame(session.Call):
+    """A frame being rendered."""
 
-    def __init__(self, target, width, height):
-        super().__init__(name="Kestrel frame")
-        self.fraction, self.status = 0.0, ""
-        self.error = None
+    def __init__(self, target, picture):
+        super().__init__("frame", lambda: target.render(
+            picture.width, picture.height, self._progress, picture.area))
+        self.fraction, self.status = 0.0, "Building"
         self.cancelled = False
-        self._session, self._size = target, (width, height)
+        self._session = target
 
     def _progress(self, fraction, status):
         self.fraction, self.status = fraction, status
         return not self.cancelled
 
-    def run(self):
-        try:
-            self._session.render(*self._size, self._progress)
-        except Exception as error:  # raised again on Blender's thread
-            self.error = error
-
     def cancel(self):
         self.cancelled = True
-        self._session.renderer.cancel()
+        self._session.cancel()
 
 
-class Display:
-    """Shows a view layer's Combined pass as far as it is, so seldom that it costs next to
-    nothing."""
+class BreakCheck:
+    """Raises Cancelled once the artist has stopped the render. Cheap enough for every item."""
 
-    def __init__(self, result, renderer, size):
-        self._result, self._renderer = result, renderer
-        self._writer = compat.CombinedWriter(result.layers[0], size[0] * size[1])
-        self._begun = self._last = time.monotonic()
-        self._spent = 0.0  # seconds of this thread's work
+    def __init__(self, engine):
+        self._engine, self._next = engine, 0.0
 
-    def copy(self):
-        """Copy what there is into the result."""
-        self._renderer.read_so_far("Combined", self._writer.pixels)
-        self._writer.write()
-
-    def show(self, engine):
-        """Show what there is, unless it was done a moment ago."""
+    def __call__(self):
         now = time.monotonic()
-        if (now - self._last < SHOW_EVERY_S or
-                self._spent > SHOW_SHARE * (now - self._begun)):
+        if now < self._next:
             return
-        begun = time.thread_time()
-        self.copy()
-        engine.update_result(self._result)
-        self._spent += time.thread_time() - begun
-        self._last = time.monotonic()
-
-
-class Teller:
-    """Writes progress where Blender shows it."""
-
-    def __init__(self, scene, view_layer, progress):
-        self._place = f"{scene.name}, {view_layer.name}"
-        self._progress, self._memory = progress, Memory()
-        self._last, self._stage = 0.0, None
-
-    def tell(self, engine, stage):
-        now = time.monotonic()
-        every = PRINT_EVERY_S if bpy.app.background else TELL_EVERY_S
-        if now - self._last < every and (bpy.app.background or stage == self._stage):
-            return
-        self._last, self._stage = now, stage
-        self._memory.measure()
-        if self._memory.used:
-            engine.update_memory_stats(memory_used=self._memory.used,
-                                       memory_peak=self._memory.peak)
-        engine.update_progress(self._progress.fraction)
-        engine.update_stats("", status_text(self._place, stage, self._progress.remaining_s,
-                                            self._memory))
+        self._next = now + POLL_S
+        if self._engine.test_break():
+            raise capi.Cancelled("The render was cancelled.")
 
 
 class FinalRender:
@@ -119,7 +79,9 @@ class FinalRender:
     def __init__(self):
         self._session = None
         self._key = None
-        self._size = (0, 0)
+        self._picture = None
+        self._call = None      # of the library, the last
+        self._begun = self._read_s = 0.0
         self._progress = Progress()
         self._teller = None
 
@@ -131,17 +93,30 @@ class FinalRender:
             self._progress = Progress()
         self._progress.begin_layer(index, count)
         self._teller = Teller(scene, view_layer, self._progress)
+        self._begun = time.monotonic()
         self._session = None
         self._key = (icons.new_key(engine) if engine.is_preview else
                      session_key(scene, view_layer))
+        if not engine.is_preview:
+            _keys.add(self._key)
         self._teller.tell(engine, "Reading the scene")
         with self._reporting(engine):
             target = session.acquire(self._key)
-            if engine.is_preview:
-                self._size = icons.export(target, depsgraph, camera_of(engine, depsgraph))
-            else:
-                self._size = motion.export_frame(engine, target, depsgraph, camera_of, log.warning)
+            self._picture = self._read(engine, depsgraph, target)
+            require_memory(*self._picture.size, passes.enabled(view_layer))
             self._session = target
+        self._read_s = time.monotonic() - self._begun
+
+    def _read(self, engine, depsgraph, target):
+        if engine.is_preview:
+            return icons.export(target, depsgraph, camera_of(engine, depsgraph))
+
+        def commit():
+            self._wait(engine, session.Call("commit", target.commit), target.cancel,
+                       lambda: self._teller.tell(engine, "Loading images"))
+
+        return motion.export_frame(engine, target, depsgraph, camera_of, log.warning,
+                                   check=BreakCheck(engine), commit=commit)
 
     def render(self, engine, depsgraph):
         """Render what update() has read."""
@@ -149,13 +124,15 @@ class FinalRender:
             return
         with self._reporting(engine):
             view_layer = depsgraph.view_layer
-            self._session.renderer.set_passes(item.name for item in passes.enabled(view_layer))
+            renderer = self._session.renderer
+            renderer.set_passes(item.name for item in passes.enabled(view_layer))
             passes.add(engine, view_layer)
             with self._result(engine, view_layer) as result:
                 self._render_frame(engine, result)
                 compat.write_passes(result.layers[0],
-                                    passes.reader(self._session.renderer, *self._size))
-            passes.stamp(engine, self._session.renderer, view_layer)
+                                    passes.reader(renderer, *self._picture.size))
+            passes.stamp(engine, renderer, view_layer)
+            self._stamp(engine, view_layer)
         if engine.is_preview:
             session.drop(self._key)
 
@@ -163,7 +140,7 @@ class FinalRender:
     def _result(self, engine, view_layer):
         """Blender's picture of a view layer, to fill in this block. It stays as it is where the
         block raises Cancelled, and is thrown away where it raises anything else."""
-        result = engine.begin_result(0, 0, *self._size, layer=view_layer.name)
+        result = engine.begin_result(0, 0, *self._picture.size, layer=view_layer.name)
         whole, merge = False, False
         try:
             yield result
@@ -175,22 +152,45 @@ class FinalRender:
             engine.end_result(result, cancel=not whole, do_merge_results=merge)
 
     def _render_frame(self, engine, result):
-        frame = Frame(self._session, *self._size)
+        frame = Frame(self._session, self._picture)
         hidden = bpy.app.background or engine.is_preview
-        display = None if hidden else Display(result, self._session.renderer, self._size)
-        frame.start()
-        while frame.is_alive():
-            frame.join(POLL_S)
+        display = None if hidden else Display(result, self._session.renderer, self._picture.size)
+
+        def meanwhile():
             self._progress.advance(frame.fraction)
-            self._teller.tell(engine, frame.status or "Building")
-            if display and frame.fraction > 0.0 and not frame.cancelled:
+            self._teller.tell(engine, frame.status)
+            if display and frame.fraction > 0.0:
                 display.show(engine)
-            if not frame.cancelled and engine.test_break():
-                frame.cancel()
-        if isinstance(frame.error, capi.Cancelled) and display and frame.fraction > 0.0:
-            display.copy()
-        if frame.error is not None:
-            raise frame.error
+
+        try:
+            self._wait(engine, frame, frame.cancel, meanwhile)
+        except capi.Cancelled:
+            if display and frame.fraction > 0.0:
+                display.copy()
+            raise
+
+    def _wait(self, engine, call, cancel, meanwhile):
+        """Until the library is done; raises what it raises. Cancelled, soon, where the artist stops
+        the render: even while the library cannot be interrupted."""
+        self._call = call
+        call.start()
+        while call.is_alive():
+            call.join(POLL_S)
+            meanwhile()
+            if engine.test_break():
+                cancel()
+                call.join(GRACE_S)
+                raise capi.Cancelled("The render was cancelled.")
+        if call.error is not None:
+            raise call.error
+
+    def _stamp(self, engine, view_layer):
+        result = engine.get_result()
+        stats = json.loads(self._session.renderer.stats())
+        total_s = time.monotonic() - self._begun
+        for name, text in stamp.fields(self._session.scene.library.version(), view_layer.name,
+                                       stats, self._read_s, total_s).items():
+            result.stamp_data_add_field(name, text)
 
     @contextlib.contextmanager
     def _reporting(self, engine):
@@ -203,7 +203,9 @@ class FinalRender:
             try:
                 yield
             except capi.Cancelled:
-                pass
+                if self._call is not None and self._call.is_alive():
+                    session.abandon(self._key)
+                self._session = None
             except capi.KestrelError as error:
                 self._fail(engine, str(error))
             except Exception as error:
@@ -227,3 +229,41 @@ def camera_of(engine, depsgraph):
     """The evaluated camera, or None."""
     camera = engine.camera_override or depsgraph.scene_eval.camera
     return camera.evaluated_get(depsgraph) if camera else None
+
+
+def system_memory():
+    """Bytes of the machine, None where the system does not say it."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return None
+
+
+def require_memory(width, height, items):
+    """Raise KestrelError where a picture with these passes cannot fit into memory: Kestrel and
+    Blender each hold one."""
+    needed = 2 * 4 * width * height * sum(len(item.channels) for item in items)
+    there = system_memory()
+    if there is not None and needed > there:
+        raise capi.KestrelError(
+            f"A picture of {width} x {height} pixels with {len(items)} passes takes "
+            f"{needed / 2 ** 30:.0f} GB of memory; this machine has {there / 2 ** 30:.0f} GB. Lower "
+            "the resolution in Output properties, render it in parts with Render Region, or switch "
+            "passes off in View Layer properties.")
+
+
+def release_sessions():
+    """Free what final renders have kept."""
+    for key in _keys:
+        session.drop(key)
+    _keys.clear()
+
+
+@persistent
+def _render_over(scene, *_arguments):
+    """After a picture or, at its end, an animation."""
+    if not scene.render.use_persistent_data:
+        release_sessions()
+
+
+HANDLERS = {"render_complete": _render_over, "render_cancel": _render_over}

@@ -28,6 +28,6 @@ def new_key(engine):
 
 
 def export(target, depsgraph, camera):
-    """Send the preview scene; returns (width, height) as sync.export_depsgraph() does."""
+    """Send the preview scene; returns as sync.export_depsgraph() does."""
     target.unseen_material = HIDDEN_FLOOR
     return sync.export_depsgraph(target, depsgraph, camera, lambda _text: None, SETTINGS)

@@ -27,6 +27,21 @@ def digest(*arrays):
                                            if view is not None and view.nbytes))
 
 
+class Call(threading.Thread):
+    """A long call of the library on a thread of its own, while Blender's looks for Escape."""
+
+    def __init__(self, name, function):
+        super().__init__(name=f"Kestrel {name}")
+        self.error = None
+        self._function = function
+
+    def run(self):
+        try:
+            self._function()
+        except Exception as error:  # for whoever waits
+            self.error = error
+
+
 class Session:
     """A core scene, its renderer, and what has been sent to them."""
 
@@ -44,14 +59,26 @@ class Session:
         self.edits = 0              # how often anything was sent that is not as it was
         self._busy = threading.Lock()
 
-    def render(self, width, height, progress):
-        """Render a frame; blocks. `progress(fraction, status)` returns False to cancel."""
+    def commit(self):
+        """Publish what was sent to the scene; blocks."""
         with self._busy:
+            self.scene.commit()
+
+    def render(self, width, height, progress, area=None):
+        """Render a frame; blocks. `progress(fraction, status)` returns False to cancel. `area`:
+        pixels (left, bottom, right, top) that are rendered, None for all."""
+        with self._busy:
+            self.renderer.set_region(area)
             self.renderer.render(width, height, progress)
 
-    def release(self):
-        """Free everything, after ending a render that is under way."""
+    def cancel(self):
+        """Let a commit or render on another thread raise Cancelled, soon."""
+        self.scene.cancel_commit()
         self.renderer.cancel()
+
+    def release(self):
+        """Free everything, after ending what is under way."""
+        self.cancel()
         with self._busy:
             self.renderer.release()
             self.scene.release()
@@ -67,13 +94,15 @@ class Export:
     REMOVAL_ORDER = (capi.KIND_OBJECT, capi.KIND_LIGHT, capi.KIND_MATERIAL, capi.KIND_TEXTURE,
                      capi.KIND_MESH)
 
-    def __init__(self, session, say, environment_ior=1.0, touched=None):
+    def __init__(self, session, say, environment_ior=1.0, touched=None, check=None):
         """`say(text)` takes warnings; each text is said once per session. `touched`: keys of the
-        objects and data whose geometry may have changed since the last export, None for all."""
+        objects and data whose geometry may have changed since the last export, None for all.
+        `check()` is called between items and may raise: the next export then does the rest."""
         self.session = session
         self.environment_ior = environment_ior
         self.scene = session.scene
         self._say = say
+        self.check = check or (lambda: None)
         self._met = set()   # (kind, id)
         self.meshes = {}    # evaluated data: mesh id
         self.materials = {}  # material key: id
@@ -88,6 +117,7 @@ class Export:
 
     def new_id(self, kind, key):
         """Id of an item that is met for the first time in this export; `key` is text or bytes."""
+        self.check()
         key = key.encode("utf-8", "replace") if isinstance(key, str) else key
         ident = stable_id(key)
         count = 0
@@ -165,6 +195,15 @@ def drop(key):
         session = _sessions.pop(key, None)
     if session is not None:
         session.release()
+
+
+def abandon(key):
+    """Free one session, if there is one, as soon as the library is done with what it does now;
+    does not wait for it."""
+    with _lock:
+        session = _sessions.pop(key, None)
+    if session is not None:
+        Call("release", session.release).start()
 
 
 def drop_all():

@@ -3,6 +3,7 @@
 // address: whatever a host passes is looked up, so a stale or mixed-up handle is an error.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -29,6 +30,8 @@ struct SceneState {
   const std::shared_ptr<DeviceState> device;
   std::mutex mutex;  // guards the builder
   SceneBuilder builder;
+  std::atomic<bool> committing = false;
+  std::atomic<bool> commit_cancelled = false;
   std::mutex published_mutex;  // apart, so that a frame need not wait for a long commit
   std::shared_ptr<const Scene> published;
 };

@@ -226,6 +226,20 @@ KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* passes) {
   });
 }
 
+KestrelError kestrelSetRegion(KestrelRenderer renderer, int x, int y, int width, int height) {
+  return guarded([&] {
+    const auto state = renderers().get(renderer);
+    if (x < 0 || y < 0 || width < 0 || height < 0 || (width == 0) != (height == 0)) {
+      fail(ErrorCode::invalid_argument,
+           "A region of {} x {} pixels at ({}, {}) is none. Use numbers from 0 on; 0 x 0 for all.",
+           width, height, x, y);
+    }
+    const std::lock_guard lock(state->mutex);
+    if (state->rendering) refuse_while_rendering();
+    state->renderer.set_region({x, y, width, height});
+  });
+}
+
 KestrelError kestrelReadPass(KestrelRenderer renderer, const char* name, float* pixels,
                              size_t float_count) {
   return guarded([&] {

@@ -21,6 +21,21 @@ KestrelError edit_scene(KestrelScene scene, Edit&& edit) noexcept {
   });
 }
 
+/// Lets a commit be cancelled while this lives.
+class CommitScope {
+ public:
+  explicit CommitScope(SceneState& state) : state_(state) {
+    state.commit_cancelled = false;
+    state.committing = true;
+  }
+  ~CommitScope() { state_.committing = false; }
+  CommitScope(const CommitScope&) = delete;
+  CommitScope& operator=(const CommitScope&) = delete;
+
+ private:
+  SceneState& state_;
+};
+
 }  // namespace
 
 KestrelScene kestrelNewScene(KestrelDevice device) {
@@ -190,8 +205,16 @@ KestrelError kestrelCommitScene(KestrelScene scene) {
   return guarded([&] {
     const auto state = scenes().get(scene);
     const std::lock_guard lock(state->mutex);
-    auto published = state->builder.commit();
+    const CommitScope scope(*state);
+    auto published = state->builder.commit([&] { return state->commit_cancelled.load(); });
     const std::lock_guard published_lock(state->published_mutex);
     state->published = std::move(published);
+  });
+}
+
+void kestrelCancelCommit(KestrelScene scene) {
+  guarded([&] {
+    const auto state = scenes().get(scene);
+    if (state->committing) state->commit_cancelled = true;
   });
 }

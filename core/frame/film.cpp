@@ -45,8 +45,8 @@ void add_row(const PassSource& from, const PassRow& pass, size_t channels, int s
 
 }  // namespace
 
-Film::Film(int width, int height, const std::vector<std::string>& wanted, const Scene& scene)
-    : width_(width), height_(height), tiles_(std::make_unique<Tile[]>(tile_count(whole()))) {
+Film::Film(const Region& area, const std::vector<std::string>& wanted, const Scene& scene)
+    : area_(area), tiles_(std::make_unique<Tile[]>(tile_count(area))) {
   for (const std::string& name : wanted) {
     const size_t row = find_pass_row(name);
     for (size_t depth = pass_rows()[row].depth; depth > 0; --depth) add_channel(row - depth);
@@ -60,7 +60,7 @@ void Film::add_channel(size_t row) {
   if (std::any_of(passes_.begin(), passes_.end(), is_row)) return;
   const size_t channels = std::strlen(pass_rows()[row].info.channels);
   passes_.push_back({row, channels, {}});
-  passes_.back().sums.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_) * channels);
+  passes_.back().sums.resize(area_.pixels() * channels);
 }
 
 void Film::add_mattes(const Scene& scene) {
@@ -78,8 +78,9 @@ void Film::add_mattes(const Scene& scene) {
   }
 }
 
+/// The tile of a pixel of the film.
 Film::Tile& Film::tile_at(int x, int y) const {
-  const int columns = (width_ + kTileSize - 1) / kTileSize;
+  const int columns = (area_.width + kTileSize - 1) / kTileSize;
   return tiles_[y / kTileSize * columns + x / kTileSize];
 }
 
@@ -92,14 +93,14 @@ void Film::add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
 
 void Film::add_tile(const PassSource& from, const Region& tile, int sample) {
   const Region& region = from.inputs.region;
-  Tile& state = tile_at(tile.x, tile.y);
+  Tile& state = tile_at(tile.x - area_.x, tile.y - area_.y);
   const tbb::spin_mutex::scoped_lock lock(state.mutex);
   for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    const Row row{
-        static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(tile.x),
-        static_cast<size_t>(y - region.y) * static_cast<size_t>(region.width) +
-            static_cast<size_t>(tile.x - region.x),
-        static_cast<size_t>(tile.width)};
+    const Row row{static_cast<size_t>(y - area_.y) * static_cast<size_t>(area_.width) +
+                      static_cast<size_t>(tile.x - area_.x),
+                  static_cast<size_t>(y - region.y) * static_cast<size_t>(region.width) +
+                      static_cast<size_t>(tile.x - region.x),
+                  static_cast<size_t>(tile.width)};
     for (Channel& pass : passes_) {
       const PassRow& source = pass_rows()[pass.pass];
       float* out = &pass.sums[row.in_picture * pass.channels];
@@ -119,8 +120,8 @@ void Film::add_tile(const PassSource& from, const Region& tile, int sample) {
 void Film::copy_so_far(std::string_view name, float* out) const {
   const Channel& pass = find(name);
   const Gathering gathering = pass_rows()[pass.pass].gathering;
-  for (int y0 = 0; y0 < height_; y0 += kTileSize) {
-    for (int x0 = 0; x0 < width_; x0 += kTileSize) {
+  for (int y0 = 0; y0 < area_.height; y0 += kTileSize) {
+    for (int x0 = 0; x0 < area_.width; x0 += kTileSize) {
       Tile& tile = tile_at(x0, y0);
       const tbb::spin_mutex::scoped_lock lock(tile.mutex);
       if (tile.samples == 0) continue;
@@ -128,10 +129,11 @@ void Film::copy_so_far(std::string_view name, float* out) const {
       // Of Cryptomatte's pairs the second numbers are sums.
       const float even = gathering == Gathering::averaged ? mean : 1.0f;
       const float odd = gathering == Gathering::first ? 1.0f : mean;
-      const size_t count = static_cast<size_t>(std::min(kTileSize, width_ - x0)) * pass.channels;
-      for (int y = y0; y < std::min(y0 + kTileSize, height_); ++y) {
+      const size_t count =
+          static_cast<size_t>(std::min(kTileSize, area_.width - x0)) * pass.channels;
+      for (int y = y0; y < std::min(y0 + kTileSize, area_.height); ++y) {
         const size_t first =
-            (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x0)) *
+            (static_cast<size_t>(y) * static_cast<size_t>(area_.width) + static_cast<size_t>(x0)) *
             pass.channels;
         for (size_t i = 0; i < count; ++i) {
           out[first + i] = pass.sums[first + i] * (i % 2 ? odd : even);
@@ -166,13 +168,13 @@ size_t Film::float_count(std::string_view name) const {
 }
 
 void Film::finish(int samples) {
-  const int tiles = tile_count(whole());
+  const int tiles = tile_count(area_);
   for (int i = 0; i < tiles; ++i) tiles_[i].samples = 1;
   const float scale = 1.0f / static_cast<float>(samples);
   for (const auto& matte : mattes_) {
     if (!matte) continue;
-    for_rows({0, 0, width_, height_}, [&](int y) {
-      const size_t width = static_cast<size_t>(width_), first = static_cast<size_t>(y) * width;
+    for_rows({0, 0, area_.width, area_.height}, [&](int y) {
+      const size_t width = static_cast<size_t>(area_.width), first = static_cast<size_t>(y) * width;
       for (size_t i = first; i < first + width; ++i) matte->slots.finish(i, scale);
     });
   }

@@ -21,12 +21,12 @@ namespace kestrel {
 class Film {
  public:
   Film() = default;
-  /// A Cryptomatte pass brings those before it along. Throws Error(invalid_argument) for a name
-  /// that is not in the table.
-  Film(int width, int height, const std::vector<std::string>& wanted, const Scene& scene);
+  /// Of a part of the picture. A Cryptomatte pass brings those before it along. Throws
+  /// Error(invalid_argument) for a name that is not in the table.
+  Film(const Region& area, const std::vector<std::string>& wanted, const Scene& scene);
 
-  /// Adds the region of `inputs` of sample `sample`; sample 0 comes first. Different regions may
-  /// be added at the same time.
+  /// Adds the region of `inputs`, whole tiles of the film's area, of sample `sample`; sample 0
+  /// comes first. Different regions may be added at the same time.
   void add(const FrameInputs& inputs, int sample, const GBuffer& gbuffer,
            const EffectBuffers& effects, const Plane<vec4>& combined);
 
@@ -38,8 +38,8 @@ class Film {
   /// each of which waits for that alone. Cryptomatte's pairs are not sorted yet. Throws as data().
   void copy_so_far(std::string_view name, float* out) const;
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return area_.width; }
+  int height() const { return area_.height; }
 
   /// Whether some pass needs GBuffer::behind.
   bool wants_layers() const;
@@ -77,12 +77,10 @@ class Film {
   void add_channel(size_t row);
   void add_mattes(const Scene& scene);
   const Channel& find(std::string_view name) const;
-  Region whole() const { return {0, 0, width_, height_}; }
   Tile& tile_at(int x, int y) const;
   void add_tile(const PassSource& from, const Region& tile, int sample);
 
-  int width_ = 0;
-  int height_ = 0;
+  Region area_;
   std::vector<Channel> passes_;
   std::unique_ptr<Tile[]> tiles_;              // as for_tiles() divides the picture
   std::optional<Mattes> mattes_[kMatteKinds];  // by kind; they point into passes_

@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/error.h"
+
 namespace kestrel {
 namespace {
 
@@ -30,18 +32,51 @@ void attach_instance(RTCDevice device, RTCScene top, RTCScene mesh, const mat4x3
 
 }  // namespace
 
-void RtScene::update(const std::shared_ptr<const Scene>& scene) {
+void RtScene::update(const std::shared_ptr<const Scene>& scene, const GoOn& go_on) {
   if (scene == scene_) return;
   scene_ = scene;
+  try {
+    build(go_on);
+  } catch (...) {
+    forget();
+    throw;
+  }
+}
+
+/// What is half built is not used again.
+void RtScene::forget() {
+  top_.reset();
+  instances_.clear();
+  instanced_.clear();
+  static_.reset();
+  static_built_.clear();
+  static_geometry_.clear();
+  static_objects_.clear();
+  scene_.reset();
+}
+
+void RtScene::check(const GoOn& go_on) const {
+  if (go_on && !go_on()) fail(ErrorCode::cancelled, "The render was cancelled.");
+}
+
+void RtScene::commit(RTCScene scene, const GoOn& go_on) {
+  const auto ask = [](void* user, double) { return (*static_cast<const GoOn*>(user))(); };
+  if (go_on) rtcSetSceneProgressMonitorFunction(scene, ask, const_cast<GoOn*>(&go_on));
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  embree::check_device(device_);
+}
+
+void RtScene::build(const GoOn& go_on) {
   normal_from_object_.clear();
   for (const Object& object : scene_->objects) {
     normal_from_object_.push_back(glm::transpose(glm::inverse(mat3(object.world_from_object))));
   }
   inspect_meshes();
   const std::vector<int> static_objects = choose_static_objects();
-  build_static(static_objects);
-  build_instanced_meshes(static_objects);
-  build_top(static_objects);
+  build_static(static_objects, go_on);
+  build_instanced_meshes(static_objects, go_on);
+  build_top(static_objects, go_on);
   embree::check_device(device_);
 }
 
@@ -91,7 +126,7 @@ std::vector<int> RtScene::choose_static_objects() {
   return chosen;
 }
 
-void RtScene::build_static(const std::vector<int>& objects) {
+void RtScene::build_static(const std::vector<int>& objects, const GoOn& go_on) {
   static_objects_ = objects;
   std::vector<StaticObject> wanted;
   for (const int i : objects) {
@@ -104,16 +139,17 @@ void RtScene::build_static(const std::vector<int>& objects) {
   static_ = new_scene(device_);
   static_geometry_.clear();
   for (const StaticObject& o : static_built_) {
+    check(go_on);
     static_geometry_.emplace_back(o.mesh, o.filtered_slots, &o.world_from_object);
   }
   for (size_t i = 0; i < static_geometry_.size(); ++i) {
     static_geometry_[i].attach(device_, static_.get(), static_cast<unsigned>(i),
                                ray_mask(static_built_[i].hidden_from), this);
   }
-  rtcCommitScene(static_.get());
+  commit(static_.get(), go_on);
 }
 
-void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
+void RtScene::build_instanced_meshes(const std::vector<int>& static_objects, const GoOn& go_on) {
   std::unordered_set<int> wanted;
   for (const Object& object : scene_->objects) wanted.insert(object.mesh);
   for (const int i : static_objects) wanted.erase(scene_->objects[i].mesh);
@@ -121,6 +157,7 @@ void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
   std::unordered_map<const Mesh*, Instanced> kept;
   std::vector<Instanced*> dirty;
   for (const int index : wanted) {
+    check(go_on);
     const std::shared_ptr<const Mesh>& mesh = scene_->meshes[index];
     const std::vector<bool>& slots = filtered_slots_[index];
     const auto known = instanced_.find(mesh.get());
@@ -136,11 +173,11 @@ void RtScene::build_instanced_meshes(const std::vector<int>& static_objects) {
   tbb::parallel_for(size_t{0}, dirty.size(), [&](size_t i) {
     dirty[i]->scene = new_scene(device_);
     dirty[i]->geometry.attach(device_, dirty[i]->scene.get(), 0, kAllRays, this);
-    rtcCommitScene(dirty[i]->scene.get());
+    commit(dirty[i]->scene.get(), go_on);
   });
 }
 
-void RtScene::build_top(const std::vector<int>& static_objects) {
+void RtScene::build_top(const std::vector<int>& static_objects, const GoOn& go_on) {
   top_.reset();
   instances_.assign(1, {kNone, nullptr});
   if (static_objects.size() == scene_->objects.size()) return;
@@ -149,13 +186,14 @@ void RtScene::build_top(const std::vector<int>& static_objects) {
   const std::unordered_set<int> in_static(static_objects.begin(), static_objects.end());
   for (size_t i = 0; i < scene_->objects.size(); ++i) {
     if (in_static.contains(static_cast<int>(i))) continue;
+    check(go_on);
     const Object& object = scene_->objects[i];
     const Instanced& mesh = instanced_.at(scene_->meshes[object.mesh].get());
     attach_instance(device_, top_.get(), mesh.scene.get(), object.world_from_object,
                     ray_mask(object.hidden_from), static_cast<unsigned>(instances_.size()));
     instances_.push_back({static_cast<int>(i), &mesh.geometry});
   }
-  rtcCommitScene(top_.get());
+  commit(top_.get(), go_on);
 }
 
 }  // namespace kestrel

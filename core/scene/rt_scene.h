@@ -4,6 +4,7 @@
 // moving it again does not rebuild the static part.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -22,8 +23,12 @@ class RtScene {
   /// `device` must outlive the scene.
   explicit RtScene(RTCDevice device) : device_(device) {}
 
-  /// Builds what differs from the last scene; meshes are compared by identity.
-  void update(const std::shared_ptr<const Scene>& scene);
+  /// Asked now and then, from any thread, whether to go on.
+  using GoOn = std::function<bool()>;
+
+  /// Builds what differs from the last scene; meshes are compared by identity. Throws
+  /// Error(cancelled) where `go_on` said no; the next update then builds everything.
+  void update(const std::shared_ptr<const Scene>& scene, const GoOn& go_on = {});
 
   RTCScene handle() const { return top_ ? top_.get() : static_.get(); }
   const Scene& scene() const { return *scene_; }
@@ -51,11 +56,15 @@ class RtScene {
     embree::SceneHandle scene;
   };
 
+  void build(const GoOn& go_on);
+  void forget();
+  void check(const GoOn& go_on) const;
+  void commit(RTCScene scene, const GoOn& go_on);
   void inspect_meshes();
   std::vector<int> choose_static_objects();
-  void build_static(const std::vector<int>& objects);
-  void build_instanced_meshes(const std::vector<int>& static_objects);
-  void build_top(const std::vector<int>& static_objects);
+  void build_static(const std::vector<int>& objects, const GoOn& go_on);
+  void build_instanced_meshes(const std::vector<int>& static_objects, const GoOn& go_on);
+  void build_top(const std::vector<int>& static_objects, const GoOn& go_on);
 
   RTCDevice device_;
   std::shared_ptr<const Scene> scene_;

@@ -395,12 +395,15 @@ void SceneBuilder::add_world(Assembly& out) {
   }
 }
 
-std::shared_ptr<Scene> SceneBuilder::assemble() {
-  textures_.decode(textures_in_use());
+std::shared_ptr<Scene> SceneBuilder::assemble(const std::function<bool()>& cancelled) {
+  textures_.decode(textures_in_use(), cancelled);
   Assembly out;
   add_materials(out);
   for (const auto& [id, light] : lights_) out.scene->lights.push_back(light);
-  for (const auto& [id, object] : objects_) add_object(out, object);
+  for (const auto& [id, object] : objects_) {
+    if (cancelled && cancelled()) fail(ErrorCode::cancelled, "The commit was cancelled.");
+    add_object(out, object);
+  }
   apply_unit_settings(out);
   add_world(out);
   out.scene->camera = *camera_;
@@ -409,11 +412,11 @@ std::shared_ptr<Scene> SceneBuilder::assemble() {
   return out.scene;
 }
 
-std::shared_ptr<const Scene> SceneBuilder::commit() {
+std::shared_ptr<const Scene> SceneBuilder::commit(const std::function<bool()>& cancelled) {
   require_references();
   // Isolated: while this thread waits for others, it must not pick up work that wants the lock
   // which the caller holds.
-  published_ = tbb::this_task_arena::isolate([this] { return assemble(); });
+  published_ = tbb::this_task_arena::isolate([&] { return assemble(cancelled); });
   return published_;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -51,8 +52,9 @@ class SceneBuilder {
   /// Resolves ids, decodes textures in use, makes tangents in use. Throws Error where an id is
   /// unknown or the camera missing; published() then stays. Items are in the order in which their
   /// ids were first set, units in that of their first rendered object; meshes and textures only
-  /// where something uses them. Unchanged ones keep their pointer from commit to commit.
-  std::shared_ptr<const Scene> commit();
+  /// where something uses them. Unchanged ones keep their pointer from commit to commit. Throws
+  /// Error(cancelled) soon after `cancelled()` says so; it is asked from any thread.
+  std::shared_ptr<const Scene> commit(const std::function<bool()>& cancelled = {});
 
   /// The last commit's; null before.
   std::shared_ptr<const Scene> published() const { return published_; }
@@ -72,7 +74,7 @@ class SceneBuilder {
   struct Assembly;
 
   void require_references();
-  std::shared_ptr<Scene> assemble();
+  std::shared_ptr<Scene> assemble(const std::function<bool()>& cancelled);
   std::vector<uint64_t> textures_in_use();
   void add_materials(Assembly& out);
   void add_object(Assembly& out, const ObjectEntry& entry);

@@ -153,13 +153,16 @@ TextureStore::FileKey TextureStore::key_of(const std::string& path, const Textur
   return key;
 }
 
-void TextureStore::decode(std::span<const uint64_t> ids) {
+void TextureStore::decode(std::span<const uint64_t> ids, const std::function<bool()>& cancelled) {
   std::vector<Entry*> waiting;
   for (const uint64_t id : ids) {
     Entry& entry = *entries_.find(id);
     if (!entry.texture) waiting.push_back(&entry);
   }
-  tbb::parallel_for_each(waiting, [](const Entry* entry) { entry->decoding->run(); });
+  tbb::parallel_for_each(waiting, [&](const Entry* entry) {
+    if (cancelled && cancelled()) fail(ErrorCode::cancelled, "The commit was cancelled.");
+    entry->decoding->run();
+  });
   for (Entry* entry : waiting) {
     entry->decoding->report();
     entry->texture = entry->decoding->texture();

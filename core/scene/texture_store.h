@@ -7,6 +7,7 @@
 #include <atomic>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <latch>
 #include <map>
 #include <memory>
@@ -82,8 +83,8 @@ class TextureStore {
   bool contains(uint64_t id) { return entries_.find(id) != nullptr; }
 
   /// Decodes those of `ids` (all known) that are not yet, in parallel. What cannot be read becomes
-  /// magenta, with one warning.
-  void decode(std::span<const uint64_t> ids);
+  /// magenta, with one warning. Throws Error(cancelled), between textures, once `cancelled()`.
+  void decode(std::span<const uint64_t> ids, const std::function<bool()>& cancelled = {});
 
   /// After decode(). The same pointer for the same texels.
   std::shared_ptr<const Texture> get(uint64_t id) { return entries_.find(id)->texture; }

@@ -12,6 +12,7 @@ import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import bpy
 import exr
@@ -26,6 +27,7 @@ class SceneTest(unittest.TestCase):
     """Starts each test with an empty scene for the engine KESTREL, one sample a pixel."""
 
     size = (32, 32)
+    keeps_sessions = True  # after a render, so that tests may look into them
 
     def setUp(self):
         bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
@@ -35,6 +37,10 @@ class SceneTest(unittest.TestCase):
         render.resolution_x, render.resolution_y = self.size
         render.resolution_percentage = 100
         self.scene.kestrel.samples = 1
+        if self.keeps_sessions:
+            patch = mock.patch.object(final_render, "release_sessions")
+            patch.start()
+            self.addCleanup(patch.stop)
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)

@@ -70,6 +70,13 @@ class ErrorTest(SceneTest):
         self.assertIn("'Empty' is the scene's camera but no camera object",
                       self.output_of_a_failing_render())
 
+    def test_picture_that_is_too_large(self):
+        self.camera()
+        with unittest.mock.patch.object(final_render, "system_memory", return_value=20000):
+            said = self.output_of_a_failing_render()
+        self.assertRegex(said, "A picture of 32 x 32 pixels with 1 passes takes .* of memory; .* "
+                               "Lower the resolution in Output properties")
+
     def test_mistakes_of_our_own_are_reported(self):
         """Also while Blender's instances are being walked, which must not outlive the call."""
         self.camera()
@@ -109,9 +116,9 @@ class CancelTest(SceneTest):
         depsgraph = bpy.context.evaluated_depsgraph_get()
         target = session.acquire("cancel test")
         self.addCleanup(session.drop, "cancel test")
-        size = sync.export_depsgraph(target, depsgraph, self.scene.camera.evaluated_get(depsgraph),
-                                     print)
-        frame = final_render.Frame(target, *size)
+        picture = sync.export_depsgraph(target, depsgraph,
+                                        self.scene.camera.evaluated_get(depsgraph), print)
+        frame = final_render.Frame(target, picture)
         frame.start()
         time.sleep(0.3)
         began = time.monotonic()
@@ -121,20 +128,69 @@ class CancelTest(SceneTest):
         self.assertIsInstance(frame.error, capi.Cancelled)
         target.scene.set_setting("samples", "1")
         target.scene.commit()
-        again = final_render.Frame(target, *size)
+        again = final_render.Frame(target, picture)
         again.start()
         again.join()
         self.assertIsNone(again.error)
         self.assertEqual(again.fraction <= 1.0, True)
+
+    def final_render(self, breaks_after):
+        """A FinalRender and an engine in whose update() Escape is pressed at some look."""
+        fake = unittest.mock.Mock(is_preview=False, camera_override=None)
+        looks = iter([False] * breaks_after)
+        fake.test_break.side_effect = lambda: next(looks, True)
+        return final_render.FinalRender(), fake
+
+    def test_while_the_scene_is_read(self):
+        """Between any two items; the next render sends the rest."""
+        self.camera()
+        for x in range(5):
+            self.cube(f"Cube {x}", 0.5, emission(f"Glow {x}", (1, 1, x / 4)),
+                      Matrix.Translation((x - 2, 0, 0)))
+        expected = self.render()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        key = final_render.session_key(self.scene, self.scene.view_layers[0])
+        with unittest.mock.patch.object(final_render, "POLL_S", 0.0):
+            for count in range(0, 15, 2):
+                session.drop(key)
+                final, fake = self.final_render(count)
+                final.update(fake, depsgraph)
+                fake.report.assert_not_called()
+                final.render(fake, depsgraph)
+                fake.begin_result.assert_not_called()
+                self.assertLessEqual(len(session.acquire(key).sent), count)
+        np.testing.assert_array_equal(self.render(), expected)
+
+    def test_library_that_is_busy(self):
+        """Blender does not wait for what cannot be interrupted; it is freed afterwards."""
+        self.camera()
+        self.world((1, 1, 1))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        go_on = threading.Event()
+        self.addCleanup(go_on.set)
+        commit = session.Session.commit
+
+        def slow(target):
+            commit(target)
+            go_on.wait(20.0)
+
+        final, fake = self.final_render(5)
+        with unittest.mock.patch.object(session.Session, "commit", slow):
+            begun = time.monotonic()
+            final.update(fake, depsgraph)
+            self.assertLess(time.monotonic() - begun, 2.0)
+        self.assertEqual(session.count(), 0)
+        self.assert_color(self.render(), 1.0)
+        go_on.set()
 
     def test_dropping_a_session_ends_its_frame(self):
         self.camera()
         self.scene.kestrel.samples = 4096
         depsgraph = bpy.context.evaluated_depsgraph_get()
         target = session.acquire("drop test")
-        size = sync.export_depsgraph(target, depsgraph, self.scene.camera.evaluated_get(depsgraph),
-                                     print)
-        frame = final_render.Frame(target, *size)
+        picture = sync.export_depsgraph(target, depsgraph,
+                                        self.scene.camera.evaluated_get(depsgraph), print)
+        frame = final_render.Frame(target, picture)
         frame.start()
         time.sleep(0.1)
         session.drop("drop test")

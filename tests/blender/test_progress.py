@@ -6,7 +6,7 @@ import unittest
 import unittest.mock
 
 import bpy
-from kestrel import final_render
+from kestrel import display
 from kestrel.progress import KNOWN_AFTER_S, Memory, Progress, status_text, time_text
 from support import SceneTest, run_blender
 
@@ -97,7 +97,7 @@ class StatusTest(SceneTest):
         bpy.ops.wm.save_as_mainfile(filepath=path)
         done = run_blender(
             self.folder, path, "-E", "KESTREL", "-o", str(self.folder / "out_"), "--python-expr",
-            "from kestrel import final_render; final_render.PRINT_EVERY_S = 0.0", "-f", "1")
+            "from kestrel import display; display.PRINT_EVERY_S = 0.0", "-f", "1")
         for layer in self.scene.view_layers:
             place = f"{self.scene.name}, {layer.name} | "
             mine = [text for text in done.stdout.splitlines() if place in text]
@@ -111,6 +111,6 @@ class StatusTest(SceneTest):
     def test_pictures_are_shown_in_windows_alone(self):
         self.camera()
         self.scene.kestrel.samples = 64
-        with unittest.mock.patch.object(final_render.Display, "__init__",
+        with unittest.mock.patch.object(display.Display, "__init__",
                                         side_effect=AssertionError("shown")):
             self.assertEqual(self.render().shape, (300, 300, 4))

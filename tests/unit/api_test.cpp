@@ -258,6 +258,8 @@ TEST_F(Api, NullHandlesAreErrors) {
   EXPECT_EQ(kestrelGetSetting(nullptr, "samples"), nullptr);
   expect_invalid();
   expect_invalid(kestrelCommitScene(nullptr));
+  kestrelCancelCommit(nullptr);
+  expect_invalid();
   expect_invalid(kestrelRender(nullptr, 1, 1, nullptr, nullptr));
   kestrelCancel(nullptr);
   expect_invalid();
@@ -271,6 +273,7 @@ TEST_F(Api, NullHandlesAreErrors) {
   expect_invalid();
   float pixel[4];
   expect_invalid(kestrelReadPass(nullptr, "Combined", pixel, 4));
+  expect_invalid(kestrelSetRegion(nullptr, 0, 0, 1, 1));
   expect_invalid(kestrelReadPassSoFar(nullptr, "Combined", pixel, 4));
   EXPECT_EQ(kestrelGetPassPixels(nullptr, "Combined"), nullptr);
   expect_invalid();
@@ -719,6 +722,21 @@ TEST_F(Api, APictureCanBeReadWhileItIsMade) {
   expect_invalid(kestrelReadPassSoFar(renderer, "Nothing", pixels.data(), pixels.size()));
 }
 
+TEST_F(Api, RegionsThatCannotBeAreErrors) {
+  set_glowing_square();
+  expect_invalid(kestrelSetRegion(renderer, -1, 0, 2, 2));
+  expect_invalid(kestrelSetRegion(renderer, 0, 0, 2, 0));
+  expect_ok(kestrelSetRegion(renderer, 3, 1, 5, 2));
+  expect_invalid(kestrelRender(renderer, 7, 4, nullptr, nullptr));
+  expect_ok(kestrelRender(renderer, 8, 4, nullptr, nullptr));
+  int width = 0, height = 0;
+  expect_ok(kestrelGetFrameSize(renderer, &width, &height));
+  EXPECT_EQ(width, 5);
+  EXPECT_EQ(height, 2);
+  expect_ok(kestrelSetRegion(renderer, 0, 0, 0, 0));
+  expect_ok(kestrelRender(renderer, 7, 4, nullptr, nullptr));
+}
+
 TEST_F(Api, CancellingKeepsTheLastFrame) {
   set_glowing_square();
   expect_ok(kestrelRender(renderer, 4, 4, nullptr, nullptr));
@@ -740,7 +758,9 @@ TEST_F(Api, CancellingKeepsTheLastFrame) {
 TEST_F(Api, CancellingWhenNothingRunsDoesNothing) {
   set_glowing_square();
   kestrelCancel(renderer);
+  kestrelCancelCommit(scene);
   EXPECT_EQ(kestrelGetError(nullptr), KESTREL_ERROR_NONE);
+  expect_ok(kestrelCommitScene(scene));
   expect_ok(kestrelRender(renderer, 4, 4, nullptr, nullptr));
 }
 

@@ -2,9 +2,13 @@
 // Whole frames of small scenes with known answers, found by rays: no OpenGL is needed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "base/error.h"
 #include "renderer.h"
@@ -438,7 +442,7 @@ TEST(Render, TilesOfOneSampleShowAsTheyGetDone) {
   Renderer renderer(std::make_shared<Device>());
   SceneMaker s = crowd();
   s.scene->settings.max_depth = 8;
-  const auto pictures = pictures_so_far(renderer, s, 700);
+  const auto pictures = pictures_so_far(renderer, s, 500);
   const std::vector<float> whole = renderer.film().pass("Combined");
   ASSERT_FALSE(pictures.empty());
   size_t early = 0;
@@ -459,8 +463,8 @@ TEST(Render, SamplesSoFarAreAveraged) {
   Renderer renderer(std::make_shared<Device>());
   SceneMaker s;
   s.scene->world.color = vec3(0.25f, 0.5f, 2.0f);
-  s.scene->settings.samples = 64;
-  const auto pictures = pictures_so_far(renderer, s, 400);
+  s.scene->settings.samples = 32;
+  const auto pictures = pictures_so_far(renderer, s, 300);
   ASSERT_GT(pictures.size(), 1u);
   const float expected[4] = {0.25f, 0.5f, 2.0f, 1.0f};
   for (size_t i = 0; i < pictures.back().size(); ++i) {
@@ -482,6 +486,95 @@ TEST(Render, CancelledPictureStaysAsFarAsItCame) {
   for (size_t i = 0; i < picture.size(); i += 4) ASSERT_FLOAT_EQ(picture[i], 0.25f);
   EXPECT_THROW(renderer.copy_so_far("Combined", picture.data(), 4), Error);
   EXPECT_THROW(renderer.copy_so_far("Nothing", picture.data(), picture.size()), Error);
+}
+
+/// The crowd, and meshes that take a while to build, each alone and instanced.
+SceneMaker heavy_crowd() {
+  SceneMaker s = crowd();
+  const int grey = s.material(matte(vec3(0.5f)));
+  s.object("heavy", sphere_mesh(400, 200), grey, placed({0, 0, 1}, 0.5f));
+  const auto shared = sphere_mesh(400, 200);
+  for (int i = 0; i < 3; ++i) {
+    s.object("instance " + std::to_string(i), shared, grey, placed({1.0f * i - 1, 2, 1}, 0.4f));
+  }
+  return s;
+}
+
+TEST(Render, CancellingAtAnyMomentIsSoonAndLeavesNoTrace) {
+  using Clock = std::chrono::steady_clock;
+  const auto device = std::make_shared<Device>();
+  SceneMaker s = heavy_crowd();
+  s.scene->settings.samples = 4;
+  std::chrono::duration<double> whole_time{};
+  std::vector<float> whole;
+  {
+    Renderer renderer(device);
+    const auto begin = Clock::now();
+    renderer.render_frame(s.scene, 120, 120, {});
+    whole_time = Clock::now() - begin;
+    whole = renderer.film().pass("Combined");
+  }
+  std::mt19937 random(11);
+  std::vector<double> late;  // seconds from the cancel to the return
+  for (int i = 0; i < 8; ++i) {
+    Renderer renderer(device);
+    const auto wait = whole_time * std::uniform_real_distribution<double>(0.0, 0.9)(random);
+    Clock::time_point cancelled;
+    std::thread canceller([&] {
+      std::this_thread::sleep_for(wait);
+      cancelled = Clock::now();
+      renderer.cancel();
+    });
+    bool threw = false;
+    try {
+      renderer.render_frame(s.scene, 120, 120, {});
+    } catch (const Error& error) {
+      threw = error.code() == ErrorCode::cancelled;
+    }
+    const auto returned = Clock::now();
+    canceller.join();
+    if (threw) late.push_back(std::chrono::duration<double>(returned - cancelled).count());
+    renderer.render_frame(s.scene, 120, 120, {});
+    ASSERT_EQ(renderer.film().pass("Combined"), whole) << "after a cancel at " << wait.count();
+  }
+  ASSERT_GE(late.size(), 4u);
+  std::nth_element(late.begin(), late.begin() + static_cast<ptrdiff_t>(late.size()) / 2,
+                   late.end());
+  EXPECT_LT(late[late.size() / 2], 0.1);
+}
+
+TEST(Render, ARegionHasTheBitsOfTheWhole) {
+  SceneMaker s = crowd();
+  s.scene->settings.samples = 3;
+  Renderer renderer(std::make_shared<Device>());
+  renderer.render_frame(s.scene, 150, 110, {});
+  const std::map<std::string, size_t> passes = {{"Combined", 4}, {"Depth", 1}, {"Shadow", 3}};
+  std::map<std::string, std::vector<float>> whole;
+  for (const auto& [name, channels] : passes) whole[name] = renderer.film().pass(name);
+  for (const Region& region : {Region{0, 0, 150, 110}, Region{37, 21, 70, 61}, Region{149, 0, 1, 9},
+                               Region{2, 3, 5, 107}}) {
+    renderer.set_region(region);
+    renderer.render_frame(s.scene, 150, 110, {});
+    ASSERT_EQ(renderer.film().width(), region.width);
+    ASSERT_EQ(renderer.film().height(), region.height);
+    for (const auto& [name, channels] : passes) {
+      const std::vector<float> part = renderer.film().pass(name);
+      const size_t row = region.width * channels;
+      for (int y = 0; y < region.height; ++y) {
+        const auto at = whole[name].begin() +
+                        static_cast<ptrdiff_t>(((region.y + y) * 150 + region.x) * channels);
+        ASSERT_TRUE(std::equal(at, at + static_cast<ptrdiff_t>(row), part.begin() + y * row))
+            << name << ", row " << y;
+      }
+    }
+  }
+  for (const Region& outside : {Region{100, 0, 51, 10}, Region{0, 100, 10, 11}}) {
+    renderer.set_region(outside);
+    EXPECT_THROW(renderer.render_frame(s.scene, 150, 110, {}), Error);
+  }
+  renderer.set_region({});
+  renderer.render_frame(s.scene, 150, 110, {});
+  EXPECT_EQ(renderer.film().width(), 150);
 }
 
 TEST(Render, SizesThatCannotBeAreRefused) {

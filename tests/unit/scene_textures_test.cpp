@@ -33,6 +33,26 @@ TEST(Textures, AFileIsDecodedOnceUnderAllItsIds) {
   EXPECT_EQ(scene->textures[0]->texels8, (std::vector<uint8_t>{50, 50, 50})) << "opaque: no alpha";
 }
 
+TEST(Textures, ACommitCanBeCancelledAndTriedAgain) {
+  const TemporaryFolder folder;
+  Builder builder;
+  for (uint64_t id = 1; id <= 8; ++id) {
+    const std::string name = fmt::format("{}.png", id);
+    builder.set_texture_file(
+        id, test::save(folder.file(name.c_str()), test::make_png(1, 1, test::kPngGrey, 8, {50})),
+        {.name = name});
+    use_texture(builder, id, id);
+  }
+  try {
+    builder.commit([] { return true; });
+    FAIL() << "it was not cancelled";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::cancelled);
+  }
+  EXPECT_EQ(builder.published(), nullptr);
+  EXPECT_EQ(builder.commit()->textures.size(), 8u);
+}
+
 TEST(Textures, AFileSetAgainIsReadAgainOnlyWhenItChanged) {
   const TemporaryFolder folder;
   const std::string path =

@@ -3,6 +3,7 @@
 events do not stop a render; these do."""
 
 import ctypes
+import time
 
 KEY_PRESS, KEY_RELEASE = 2, 3
 XK_ESCAPE = 0xff1b
@@ -53,9 +54,10 @@ class Keyboard:
     def press_escape(self):
         """Press and release Escape in every window at the top."""
         code = self._x.XKeysymToKeycode(self._display, XK_ESCAPE)
+        now_ms = int(1000.0 * time.monotonic())  # at the same time, it would be a key held down
         for window in self._children(self._root):
-            for kind in (KEY_PRESS, KEY_RELEASE):
+            for kind, at_ms in ((KEY_PRESS, now_ms), (KEY_RELEASE, now_ms + 20)):
                 event = KeyEvent(type=kind, display=self._display, window=window, root=self._root,
-                                 keycode=code, same_screen=1)
+                                 keycode=code, time=at_ms, same_screen=1)
                 self._x.XSendEvent(self._display, window, True, 0, ctypes.byref(event))
         self._x.XFlush(self._display)

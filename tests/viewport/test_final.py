@@ -6,7 +6,7 @@ from unittest import mock
 
 import bpy
 import numpy as np
-from kestrel import final_render
+from kestrel import display, session
 from keyboard import Keyboard
 from support import read_planes, rgba
 from viewport_support import ViewportTest, psnr
@@ -14,6 +14,7 @@ from viewport_support import ViewportTest, psnr
 
 class FinalTest(ViewportTest):
     size = (640, 360)  # of the picture
+    keeps_sessions = False
 
     def setUp(self):
         super().setUp()
@@ -24,21 +25,33 @@ class FinalTest(ViewportTest):
         settings = self.scene.render.image_settings
         settings.file_format, settings.color_mode = "OPEN_EXR", "RGBA"
         settings.color_depth = "32"
-        self.keyboard = Keyboard()
+        self.keyboard, self.pressed = Keyboard(), 0.0
         self.addCleanup(self.keyboard.close)
         self.still_life()
         self.look()
         self.camera_of_view()
         self.scene.render.resolution_x, self.scene.render.resolution_y = self.size
+        self.scene.kestrel.threads = 1  # one core is Blender's own
+        self.view = self.area
+        self.view.type = "TEXT_EDITOR"  # nothing that takes long to draw
+        self.addCleanup(setattr, self.view, "type", "VIEW_3D")
 
     def start(self):
         """F12."""
-        with self.context():
+        with bpy.context.temp_override(window=self.window):
             bpy.ops.render.render("INVOKE_DEFAULT")
 
     @staticmethod
     def over():
         return not bpy.app.is_job_running("RENDER")
+
+    def stopped(self):
+        """Whether Escape has ended the render. It is pressed until then: Blender forgets what comes
+        before its render has begun."""
+        if time.monotonic() - self.pressed > 0.5:
+            self.pressed = time.monotonic()
+            self.keyboard.press_escape()
+        return self.over()
 
     def picture(self):
         """What the image editor shows now, height x width x 4."""
@@ -49,13 +62,13 @@ class FinalTest(ViewportTest):
     def watch_display(self):
         """List that grows with every picture shown as it forms, height x width x 4."""
         pictures = []
-        original = final_render.Display.copy
+        original = display.Display.copy
 
         def copy(display):
             original(display)
             pictures.append(display._writer.pixels.reshape(*self.size[::-1], 4)[::-1].copy())
 
-        patch = mock.patch.object(final_render.Display, "copy", copy)
+        patch = mock.patch.object(display.Display, "copy", copy)
         patch.start()
         self.addCleanup(patch.stop)
         return pictures
@@ -66,11 +79,10 @@ class ProgressiveTest(FinalTest):
         """Every pixel is missing or final."""
         pictures = self.watch_display()
         for name, value in (("SHOW_EVERY_S", 0.0), ("SHOW_SHARE", 1.0)):
-            patch = mock.patch.object(final_render, name, value)
+            patch = mock.patch.object(display, name, value)
             patch.start()
             self.addCleanup(patch.stop)
         self.scene.kestrel.samples = 1
-        self.scene.kestrel.threads = 1
         self.start()
         yield self.over
         final = self.picture()
@@ -89,10 +101,9 @@ class ProgressiveTest(FinalTest):
         self.start()
         yield lambda: len(pictures) >= 2
         self.assertLessEqual(len(pictures),
-                             (time.monotonic() - begun) / final_render.SHOW_EVERY_S)
+                             (time.monotonic() - begun) / display.SHOW_EVERY_S)
         early = self.picture()
-        self.keyboard.press_escape()
-        yield self.over
+        yield self.stopped
         left, stopped = self.picture(), pictures[-1]
         self.scene.kestrel.samples = 16
         self.start()
@@ -101,3 +112,28 @@ class ProgressiveTest(FinalTest):
         print(f"early {psnr(early, final):.1f} dB, left {psnr(left, final):.1f} dB")
         self.assertGreater(psnr(early, final), 25.0)  # Blender has what was shown,
         np.testing.assert_array_equal(left, stopped)  # and keeps what there was at the end
+
+
+class CancelTest(FinalTest):
+    size = (320, 180)
+
+    def test_fifty_times(self):
+        """Escape at random moments: Blender goes on, and the next picture is as ever."""
+        self.start()
+        yield self.over
+        expected = self.picture()
+        random = np.random.default_rng(5)
+        for _ in range(50):
+            self.scene.kestrel.samples = 4096
+            self.start()
+            begun, wait = time.monotonic(), random.uniform(0.0, 0.15)
+            yield lambda: time.monotonic() - begun >= wait
+            yield self.stopped
+        self.scene.kestrel.samples = self.samples
+        self.assertEqual(session.count(), 0)
+        self.start()
+        yield self.over
+        np.testing.assert_array_equal(self.picture(), expected)
+        self.view.type = "VIEW_3D"
+        self.render_shading()
+        yield self.settled

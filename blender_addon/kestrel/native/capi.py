@@ -212,6 +212,7 @@ FUNCTIONS = {
     "kestrelSetSetting": (c_int, [c_void_p, c_char_p, c_char_p]),
     "kestrelGetSetting": (c_char_p, [c_void_p, c_char_p]),
     "kestrelCommitScene": (c_int, [c_void_p]),
+    "kestrelCancelCommit": (None, [c_void_p]),
     "kestrelNewRenderer": (c_void_p, [c_void_p]),
     "kestrelRetainRenderer": (None, [c_void_p]),
     "kestrelReleaseRenderer": (None, [c_void_p]),
@@ -221,6 +222,7 @@ FUNCTIONS = {
     "kestrelGetPassCount": (c_size_t, [c_void_p]),
     "kestrelGetPassName": (c_char_p, [c_void_p, c_size_t]),
     "kestrelGetPassChannels": (c_char_p, [c_void_p, c_char_p]),
+    "kestrelSetRegion": (c_int, [c_void_p, c_int, c_int, c_int, c_int]),
     "kestrelSetPasses": (c_int, [c_void_p, c_char_p]),
     "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelReadPassSoFar": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
@@ -456,6 +458,10 @@ class Scene:
     def commit(self):
         self.library.check(self.c.kestrelCommitScene(self.handle))
 
+    def cancel_commit(self):
+        """Let a commit() on another thread raise Cancelled."""
+        self.c.kestrelCancelCommit(self.handle)
+
 
 class Renderer:
     """Owner of a renderer handle."""
@@ -492,6 +498,12 @@ class Renderer:
                  for index in range(self.c.kestrelGetPassCount(self.handle))]
         return {name: self.c.kestrelGetPassChannels(self.handle, encode(name)).decode()
                 for name in names}
+
+    def set_region(self, area):
+        """Pixels (left, bottom, right, top) of the picture that the next frames have; None: all."""
+        left, bottom, right, top = area or (0, 0, 0, 0)
+        self.library.check(self.c.kestrelSetRegion(self.handle, left, bottom, right - left,
+                                                   top - bottom))
 
     def set_passes(self, names):
         """Passes that the next frames keep."""

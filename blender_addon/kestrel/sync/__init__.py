@@ -12,23 +12,25 @@ from .world import sync_world
 VIEWPORT_SETTINGS = ("budget_ms", "samples", "first_sample")
 
 
-def export_depsgraph(session, depsgraph, camera, say, settings=None):
+def export_depsgraph(session, depsgraph, camera, say, settings=None, check=None, commit=None):
     """Send everything that this depsgraph shows through `camera`, an evaluated object or None.
 
-    `settings`, as {name: text}, take the place of the scene's own. Returns the (width, height) to
-    render. `say(text)` takes warnings. Raises KestrelError; the session is then unfit for use.
+    `settings`, as {name: text}, take the place of the scene's own. Returns the camera.Picture to
+    render. `say(text)` takes warnings. Raises KestrelError; the session is then unfit for use,
+    unless it was Cancelled: `check()` is called between items and may raise that. `commit()` takes
+    the place of the session's.
     """
     scene = depsgraph.scene_eval
-    export = Export(session, say, scene.kestrel.environment_ior)
-    size = sync_camera(export, camera, scene.render)
+    export = Export(session, say, scene.kestrel.environment_ior, check=check)
+    picture = sync_camera(export, camera, scene.render)
     ambient = sync_world(export, scene.world)
     sync_settings(export, scene, depsgraph.view_layer_eval, ambient)
     for name, value in (settings or {}).items():
         export.scene.set_setting(name, value)
     sync_objects(export, depsgraph)
     export.finish()
-    export.scene.commit()
-    return size
+    (commit or session.commit)()
+    return picture
 
 
 def export_viewport(session, depsgraph, space, say, touched=None):

@@ -1,10 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The camera: Blender's lens, sensor and shift as the window of the plane z = -1."""
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ..native import capi
 from .object import columns
 
 NEAREST_FOCUS_M = 1e-5
+
+
+class Picture(NamedTuple):
+    """What is rendered of a picture of width x height pixels."""
+    width: int
+    height: int
+    area: tuple  # left, bottom, right, top, pixels
+
+    @property
+    def size(self):
+        """(width, height) of what is rendered."""
+        left, bottom, right, top = self.area
+        return right - left, top - bottom
 
 
 def frame_size(render):
@@ -17,10 +34,13 @@ def border(render, width, height):
     """Pixels (left, bottom, right, top) that are rendered."""
     if not render.use_border:
         return 0, 0, width, height
-    left = min(int(render.border_min_x * width), width - 1)
-    bottom = min(int(render.border_min_y * height), height - 1)
-    return (left, bottom, max(int(render.border_max_x * width), left + 1),
-            max(int(render.border_max_y * height), bottom + 1))
+    def pixel(share, side):
+        return int(np.float32(share) * np.float32(side))  # rounded as Blender does
+
+    left = min(pixel(render.border_min_x, width), width - 1)
+    bottom = min(pixel(render.border_min_y, height), height - 1)
+    return (left, bottom, max(pixel(render.border_max_x, width), left + 1),
+            max(pixel(render.border_max_y, height), bottom + 1))
 
 
 def window(camera, render, width, height):
@@ -83,14 +103,14 @@ def set_aperture(item, values):
 
 
 def sync_camera(export, obj, render):
-    """Send the camera; returns the (width, height) of what is rendered."""
-    item, size = camera_item(export, obj, render)
+    """Send the camera, which sees the whole picture; returns the Picture."""
+    item, picture = camera_item(export, obj, render)
     export.scene.set_camera(item)
-    return size
+    return picture
 
 
 def camera_item(export, obj, render):
-    """(capi.Camera, (width, height) of what is rendered) of an evaluated object or None."""
+    """(capi.Camera, Picture) of an evaluated object or None."""
     if obj is None:
         raise capi.KestrelError(
             "The scene has no camera. Add one with Add > Camera, or make one the scene's camera "
@@ -104,12 +124,10 @@ def camera_item(export, obj, render):
         export.warn(f"Camera '{obj.name}': panoramic lenses are not supported; it is drawn in "
                     "perspective.")
     width, height = frame_size(render)
-    area = border(render, width, height)
     item = capi.Camera()
     item.projection = capi.ORTHOGRAPHIC if data.type == "ORTHO" else capi.PERSPECTIVE
     item.world_from_camera[:] = columns(rigid(obj.matrix_world))
-    item.left, item.right, item.bottom, item.top = crop(
-        window(data, render, width, height), area, width, height)
+    item.left, item.right, item.bottom, item.top = window(data, render, width, height)
     item.near_clip, item.far_clip = data.clip_start, data.clip_end
     set_aperture(item, aperture(obj))
-    return item, (area[2] - area[0], area[3] - area[1])
+    return item, Picture(width, height, border(render, width, height))

@@ -74,7 +74,7 @@ def shutter(scene):
     return None
 
 
-def export_frame(engine, session, depsgraph, camera_of, say):
+def export_frame(engine, session, depsgraph, camera_of, say, check=None, commit=None):
     """As sync.export_depsgraph(), with motion where the scene asks for it. `camera_of(engine,
     depsgraph)` gives the evaluated camera or None. Blender's scene is back at its frame in the
     end."""
@@ -82,7 +82,8 @@ def export_frame(engine, session, depsgraph, camera_of, say):
     times = shutter(scene)
     if times is None:
         _send_objects(session, [])
-        return export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say)
+        return export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say,
+                                check=check, commit=commit)
     now = scene.frame_current_final
 
     def go_to(time):
@@ -93,7 +94,8 @@ def export_frame(engine, session, depsgraph, camera_of, say):
         start, middle, end = times
         if middle:
             go_to(middle)
-        size = export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say)
+        picture = export_depsgraph(session, depsgraph, camera_of(engine, depsgraph), say,
+                                   check=check, commit=commit)
 
         def look(time, wanted=()):
             go_to(time)
@@ -105,8 +107,8 @@ def export_frame(engine, session, depsgraph, camera_of, say):
         _send_objects(session, moments)
         _send_meshes(session, moments, deforming)
         _send_camera(session, [moment.camera for moment in moments])
-        session.scene.commit()
-        return size
+        (commit or session.commit)()
+        return picture
     finally:
         go_to(0.0)
 

@@ -353,6 +353,10 @@ KESTREL_API const char* kestrelGetSetting(KestrelScene scene, const char* name);
  * published before, so that renderers upload and build nothing twice. */
 KESTREL_API KestrelError kestrelCommitScene(KestrelScene scene);
 
+/* Makes a running kestrelCommitScene() return KESTREL_ERROR_CANCELLED soon, at the latest when the
+ * textures that are just being decoded are done; what was published stays. From any thread. */
+KESTREL_API void kestrelCancelCommit(KestrelScene scene);
+
 /* ---- Rendering ------------------------------------------------------------------------------- */
 
 typedef struct KestrelRendererImpl* KestrelRenderer;
@@ -370,6 +374,12 @@ typedef bool (*KestrelProgressCallback)(void* user, float fraction, const char* 
  * out cannot be read. A Cryptomatte pass keeps those before it too. An unknown name is an error. */
 KESTREL_API KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* passes);
 
+/* What the next frames render of their pictures, in pixels from the lower left corner: a frame and
+ * its passes then have this size, and with `primary` = rays the very bits that the whole picture
+ * has there. 0 x 0: all, as at first. kestrelRender() refuses what lies outside of its picture. */
+KESTREL_API KestrelError kestrelSetRegion(KestrelRenderer renderer, int x, int y, int width,
+                                          int height);
+
 /* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. While it
  * runs, another kestrelRender() of the same renderer, and reading its passes, size or statistics,
  * fail with KESTREL_ERROR_INVALID_OPERATION (waiting could never end in a progress callback). It
@@ -380,7 +390,7 @@ KESTREL_API KestrelError kestrelRender(KestrelRenderer renderer, int width, int 
 
 /* Copies a pass of the frame under way as far as it is, of the last frame where none is, or of a
  * cancelled one what it had: averages over the samples so far. Pixels that have none yet stay as
- * they are in `pixels`, width * height * channels floats of the size given to kestrelRender(). From
+ * they are in `pixels`, width * height * channels floats of the frame. From
  * any thread, also in a progress callback; the frame's threads hardly wait for it. Passes that are
  * not averaged (Depth, ids …) are there after the first sample. An error before the first frame. */
 KESTREL_API KestrelError kestrelReadPassSoFar(KestrelRenderer renderer, const char* name,

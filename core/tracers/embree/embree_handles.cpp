@@ -8,6 +8,7 @@ namespace kestrel::embree {
 namespace {
 
 void report_error(void*, RTCError code, const char* text) {
+  if (code == RTC_ERROR_CANCELLED) return;  // as was asked for
   log::warning("Embree error {}: {}", static_cast<int>(code), text ? text : "");
 }
 
@@ -31,6 +32,7 @@ DeviceHandle new_device() {
 void check_device(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
+  if (error == RTC_ERROR_CANCELLED) fail(ErrorCode::cancelled, "The render was cancelled.");
   fail(error == RTC_ERROR_OUT_OF_MEMORY ? ErrorCode::out_of_memory : ErrorCode::unknown,
        "Embree could not build the scene (error {}). Try a scene with fewer triangles.",
        static_cast<int>(error));

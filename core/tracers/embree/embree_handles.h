@@ -19,7 +19,8 @@ using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 /// A device whose errors go to the log. Throws Error(unknown) where Embree cannot start.
 DeviceHandle new_device();
 
-/// Throws what the device met since the last check.
+/// Throws what the device met on this thread since the last check; Error(cancelled) where a build
+/// was.
 void check_device(RTCDevice device);
 
 }  // namespace kestrel::embree

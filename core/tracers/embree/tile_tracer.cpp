@@ -66,7 +66,7 @@ void TileTracer::trace(const Region& tile) {
   if (pixels_.empty()) return;
   trace_primary_shadows();
   start_paths();
-  while (!paths_.empty()) trace_depth();
+  while (!paths_.empty() && !(request_.cancelled && request_.cancelled())) trace_depth();
 }
 
 /// In blocks of 4 x 4, so that a packet's rays stay close together.
