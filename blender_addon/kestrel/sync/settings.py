@@ -14,8 +14,8 @@ def as_text(row, value):
         return "true" if value else "false"
     if row["type"] == "color":
         return " ".join(f"{channel:.9g}" for channel in value)
-    if row["type"] == "float":
-        return f"{value:.9g}"
+    if row["type"] == "float":  # a limit itself may be beyond it once rounded to 32 bits
+        return f"{min(max(value, row['min']), row['max']):.9g}"
     return str(value)
 
 
