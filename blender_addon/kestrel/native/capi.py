@@ -361,11 +361,10 @@ class Scene:
             self._handle = None
 
     def set_mesh(self, ident, name, positions, triangles, corner_normals=None, corner_uvs=None,
-                 triangle_materials=None, motion=None, uv_map=0, attributes=()):
-        """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,). `motion`:
-        positions and corner normals, or None for those, of several shapes one after the other.
-        `uv_map`: the id of the UVs; `attributes`: [(id, float32 (3T, 2) for UVs or (3T, 3) for
-        colours), ...]."""
+                 triangle_materials=None, uv_map=0, attributes=(), motion=None):
+        """float32 (V, 3), uint32 (T, 3), float32 (3T, 3), float32 (3T, 2), uint32 (T,); the id of
+        the UVs; [(id, float32 (3T, 2) for UVs or (3T, 3) for colours), ...]. `motion`: positions
+        and corner normals, or None for those, of several shapes one after the other."""
         moved, moved_normals = motion or (None, None)
         more = (MeshAttribute * len(attributes))(*(
             MeshAttribute(ident, values.shape[1], pointer(values, float_p, np.float32))

@@ -17,6 +17,15 @@ from .camera import camera_item
 from .object import sync_objects
 
 
+def copied(value):
+    """The same with arrays of its own, also those in lists of tuples."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    if isinstance(value, (list, tuple)):
+        return type(value)(copied(item) for item in value)
+    return value
+
+
 class _Catcher:
     """Takes the place of the core's scene: keeps meshes and drops the rest."""
 
@@ -25,8 +34,7 @@ class _Catcher:
 
     def set_mesh(self, ident, *values):
         # Copies: the next evaluation frees what arrays may look at.
-        self.meshes[ident] = [value.copy() if isinstance(value, np.ndarray) else value
-                              for value in values]
+        self.meshes[ident] = [copied(value) for value in values]
 
     def __getattr__(self, _name):
         return lambda *_arguments: None
