@@ -22,6 +22,7 @@
 #include "stages/raster.h"
 #include "stages/trace.h"
 #include "tracers/embree/embree_tracer.h"
+#include "tracers/embree/layer_rays.h"
 #include "tracers/embree/primary_rays.h"
 
 namespace kestrel {
@@ -72,7 +73,9 @@ struct Workspace {
 
 struct Renderer::Impl {
   explicit Impl(std::shared_ptr<Device> d) : device(std::move(d)) {
-    for (const PassInfo& pass : pass_table()) passes.emplace_back(pass.name);
+    for (const PassInfo& pass : pass_table()) {
+      if (in_all(pass)) passes.emplace_back(pass.name);
+    }
   }
 
   void render(const Progress& progress);
@@ -96,6 +99,7 @@ struct Renderer::Impl {
   RtScene rt_scene{device->embree()};
   std::unique_ptr<RasterStage> raster;  // while OpenGL is in use
   PrimaryRays primary_rays{rt_scene};
+  LayerRays layer_rays{rt_scene};
   EmbreeTracer embree_tracer{rt_scene};
   HeuristicStage heuristic;
   TraceStage trace_stage{embree_tracer};
@@ -167,7 +171,7 @@ void Renderer::render_frame(std::shared_ptr<const Scene> scene, int width, int h
 }
 
 void Renderer::set_passes(const std::vector<std::string>& names) {
-  Film(0, 0, names);  // checks them
+  for (const std::string& name : names) find_pass_row(name);
   impl_->passes = names;
 }
 
@@ -188,16 +192,18 @@ void Renderer::Impl::render(const Progress& report_to) {
 }
 
 void Renderer::Impl::begin_film() {
-  Film empty(width, height, passes);
+  Film empty(width, height, passes, *scene);
   const std::lock_guard lock(film_mutex);
   film = std::move(empty);
 }
 
 void Renderer::Impl::render_sample(int sample) {
   const Settings& settings = scene->settings;
-  const FrameInputs inputs{*scene, width, height,
-                           subpixel_offset(settings, settings.first_sample + sample),
-                           settings.budget_ms / static_cast<float>(settings.samples)};
+  FrameInputs inputs{*scene, width, height,
+                     subpixel_offset(settings, settings.first_sample + sample),
+                     settings.budget_ms / static_cast<float>(settings.samples)};
+  inputs.keep_uv = film.has("UV");
+  inputs.keep_behind = film.wants_layers();
   if (sample == 0 && !limited()) {
     // Nothing has to be seen for it: as if every object were visible.
     selection = heuristic.select(inputs, Areas(scene->objects.size() + 1, 1));
@@ -284,6 +290,7 @@ void Renderer::Impl::rasterize(const FrameInputs& inputs, Workspace& work) {
   } else {
     work.primary_rays += primary_rays.run(inputs, work.gbuffer);
   }
+  if (inputs.keep_behind) work.primary_rays += layer_rays.run(inputs, work.gbuffer);
 }
 
 /// Decides who is traced, where there is a budget to keep.

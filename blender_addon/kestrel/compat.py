@@ -181,6 +181,16 @@ def triangle_polygons(mesh):
 
 # ---- render results --------------------------------------------------------------------------
 
+# What passes are called from 5.0 on, by their names before.
+NEW_PASS_NAMES = {"DiffCol": "Diffuse Color", "Emit": "Emission", "IndexMA": "Material Index",
+                  "IndexOB": "Object Index"}
+
+
+def pass_name(scene, name):
+    """The name in this Blender of a pass that was called so before 5.0."""
+    return name if hasattr(scene, "node_tree") else NEW_PASS_NAMES.get(name, name)
+
+
 def write_passes(layer, pixels_of):
     """Fill a result layer. `pixels_of(pass)` gives its float32 pixels, channels interleaved."""
     passes = list(layer.passes)

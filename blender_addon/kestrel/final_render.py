@@ -153,6 +153,7 @@ class FinalRender:
                 self._render_frame(engine, result)
                 compat.write_passes(result.layers[0],
                                     passes.reader(self._session.renderer, *self._size))
+            passes.stamp(engine, self._session.renderer, view_layer)
         if engine.is_preview:
             session.drop(self._key)
 

@@ -125,8 +125,8 @@ class Export:
         self._shapes.setdefault(key, []).append((ident, slot_count))
 
     def put_object(self, ident, description, matrix):
-        """`description`: name, unit, mesh, materials and visibility. Only the matrix is sent if
-        it alone changed."""
+        """`description`: set_object()'s, without the matrix. Only the matrix is sent if it alone
+        changed."""
         key = (capi.KIND_OBJECT, ident)
         before = self.session.sent.get(key)
         if before == (description, matrix):

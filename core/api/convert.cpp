@@ -135,6 +135,7 @@ MaterialInput material_from(const KestrelMaterial& material) {
       enumerated(material.alpha_mode, {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend},
                  "KestrelAlphaMode");
   m.alpha_cutoff = material.alpha_cutoff;
+  m.pass_index = material.pass_index;
   out.emission_texture = material.emission_texture;
   out.ambient_texture = material.ambient_texture;
   out.diffuse_texture = material.diffuse_texture;
@@ -182,6 +183,8 @@ ObjectInput object_from(const KestrelObject& object) {
   }
   out.hidden_from = static_cast<uint8_t>(object.hidden_from);
   out.holdout = object.holdout;
+  out.pass_index = object.pass_index;
+  out.asset = text_from(object.asset);
   return out;
 }
 
@@ -215,6 +218,8 @@ WorldInput world_from(const KestrelWorld& world) {
   for (int column = 0; column < 3; ++column) {
     out.values.map_from_world[column] = vec3_from(world.map_from_world + 3 * column);
   }
+  const float falloff = world.mist_falloff == 0.0f ? 1.0f : world.mist_falloff;
+  out.values.mist = {world.mist_start, world.mist_depth, falloff};
   return out;
 }
 

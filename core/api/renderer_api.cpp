@@ -98,7 +98,9 @@ const PassInfo& find_pass(std::string_view name) {
 std::vector<const PassInfo*> parse_passes(std::string_view text) {
   std::vector<const PassInfo*> passes;
   if (text == "all") {
-    for (const PassInfo& pass : pass_table()) passes.push_back(&pass);
+    for (const PassInfo& pass : pass_table()) {
+      if (in_all(pass)) passes.push_back(&pass);
+    }
     return passes;
   }
   while (true) {
@@ -108,6 +110,15 @@ std::vector<const PassInfo*> parse_passes(std::string_view text) {
     if (comma == text.size()) return passes;
     text.remove_prefix(comma + 1);
   }
+}
+
+MatteKind matte_kind(std::string_view layer) {
+  for (const MatteKind kind : {MatteKind::object, MatteKind::material, MatteKind::asset}) {
+    if (layer == matte_layer(kind)) return kind;
+  }
+  fail(ErrorCode::invalid_argument,
+       "'{}' is no layer of Cryptomatte. There are CryptoObject, CryptoMaterial and CryptoAsset.",
+       layer);
 }
 
 }  // namespace
@@ -244,6 +255,27 @@ const float* kestrelGetPassPixels(KestrelRenderer renderer, const char* name) {
   });
 }
 
+uint32_t kestrelGetCryptomatteHash(const char* name) {
+  return guarded_or(uint32_t{0}, [&] { return murmur_hash3(require(name, "name")); });
+}
+
+const char* kestrelGetCryptomatteManifest(KestrelRenderer renderer, const char* layer) {
+  return guarded_or(static_cast<const char*>(nullptr), [&] {
+    thread_local std::string manifest;
+    const auto state = renderers().get(renderer);
+    const MatteKind kind = matte_kind(require(layer, "layer"));
+    const ReadScope frame(*state);
+    const std::string* found = frame.film().manifest(kind);
+    if (!found) {
+      fail(ErrorCode::invalid_operation,
+           "The last frame kept no pass of '{}'. Ask for '{}00' with kestrelSetPasses().", layer,
+           layer);
+    }
+    manifest = *found;
+    return manifest.c_str();
+  });
+}
+
 const char* kestrelGetStats(KestrelRenderer renderer) {
   return guarded_or(static_cast<const char*>(nullptr), [&] {
     thread_local std::string stats;
@@ -266,6 +298,6 @@ KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path, const
       if (std::string_view(passes) == "all" && !film.has(pass->name)) continue;
       layers.push_back({pass->name, pass->channels, film.data(pass->name)});
     }
-    images::write_file(path, film.width(), film.height(), layers);
+    images::write_file(path, film.width(), film.height(), layers, film.matte_attributes());
   });
 }

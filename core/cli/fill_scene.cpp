@@ -59,6 +59,8 @@ void set_object(KestrelScene scene, uint64_t id, const ObjectDescription& object
   o.unit = object.unit.empty() ? nullptr : object.unit.c_str();
   o.hidden_from = object.hidden_from;
   o.holdout = object.holdout;
+  o.pass_index = object.pass_index;
+  o.asset = object.asset.empty() ? nullptr : object.asset.c_str();
   check(kestrelSetObject(scene, id, &o));
   for (const auto& [name, value] : object.settings) {
     check(kestrelSetObjectSetting(scene, id, name.c_str(), value.c_str()));
@@ -73,6 +75,9 @@ void set_world(KestrelScene scene, const WorldDescription& world) {
     w.textures[i] = world.textures[i] == kNoIndex ? 0 : id_of(world.textures[i]);
   }
   for (int i = 0; i < 9; ++i) w.map_from_world[i] = world.map_from_world[i / 3][i % 3];
+  w.mist_start = world.mist_start;
+  w.mist_depth = world.mist_depth;
+  w.mist_falloff = world.mist_falloff;
   check(kestrelSetWorld(scene, &w));
 }
 

@@ -60,8 +60,15 @@ std::vector<mat4x3> parse_placements(const JsonNode& node) {
   return placements;
 }
 
+/// What compositing tells objects by.
+void parse_identity(const JsonNode& node, ObjectDescription& object) {
+  if (const auto n = node.find("asset")) object.asset = n->text();
+  if (const auto n = node.find("pass_index")) object.pass_index = n->integer(0, 1'000'000);
+}
+
 std::vector<std::string> object_keys(const std::vector<std::string>& own) {
-  std::vector<std::string> keys = {"name", "unit", "instances", "hidden_from", "holdout"};
+  std::vector<std::string> keys = {"name",    "unit",  "instances", "hidden_from",
+                                   "holdout", "asset", "pass_index"};
   for (const auto& more : {own, transform_keys(), setting_names("object")}) {
     keys.insert(keys.end(), more.begin(), more.end());
   }
@@ -236,6 +243,8 @@ void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& cont
   const auto name = node.find(node.has("unit") ? "unit" : "name");
   const std::string unit = name ? name->text() : "";
   const auto join = node.find("join");
+  ObjectDescription identity;
+  parse_identity(node, identity);
   ModelCache::Entry& entry = context.models.read(file, parse_up(node));
   const Model& model = entry.model;
   const auto replacements = parse_replacements(node, model, context.materials);
@@ -245,7 +254,7 @@ void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& cont
   for (const mat4x3& placement : placements) {
     for (const ModelNode& part : model.nodes) {
       const int material = model.mesh_materials[part.mesh];
-      ObjectDescription object;
+      ObjectDescription object = identity;
       object.name = part.name.empty() ? unit : part.name;
       object.unit =
           unit_of(part, model.materials.at(material).name, rules, unit.empty() ? part.name : unit);
@@ -292,6 +301,7 @@ void parse_object(const JsonNode& node, size_t index, ParseContext& context) {
   const auto unit = node.find("unit");
   object.name = name ? name->text() : fmt::format("Object {}", index);
   if (unit) object.unit = unit->text();
+  parse_identity(node, object);
   object.materials = parse_slots(node, context.materials);
   object.settings = parse_settings(node, "object");
   parse_visibility(node, object);

@@ -125,7 +125,8 @@ MaterialDescription parse_material(const JsonNode& node, const Names& textures, 
                     "offset",
                     "casts_shadow",
                     "alpha_mode",
-                    "alpha_cutoff"});
+                    "alpha_cutoff",
+                    "pass_index"});
   MaterialDescription material;
   material.name = names.add(node, index);
   KestrelMaterial& m = material.values;
@@ -140,6 +141,7 @@ MaterialDescription parse_material(const JsonNode& node, const Names& textures, 
     m.alpha_mode = n->choice({"opaque", "mask", "blend"});
   }
   if (const auto n = node.find("alpha_cutoff")) m.alpha_cutoff = n->number(0, 1);
+  if (const auto n = node.find("pass_index")) m.pass_index = n->integer(0, 1'000'000);
   return material;
 }
 

@@ -91,6 +91,13 @@ std::vector<CameraKey> parse_path(const JsonNode& node) {
 
 // ---- world -------------------------------------------------------------------------------------
 
+void parse_mist(const JsonNode& node, WorldDescription& world) {
+  node.expect_keys({"start", "depth", "falloff"});
+  if (const auto n = node.find("start")) world.mist_start = n->number(0, kMaximumLength);
+  world.mist_depth = node.require("depth").number(0, kMaximumLength);
+  if (const auto n = node.find("falloff")) world.mist_falloff = n->number(0.1, 10);
+}
+
 int add_world_image(const JsonNode& file, KestrelExtension extension, SceneDescription& scene) {
   TextureDescription texture;
   texture.source = TextureFile{resolve_file(file)};
@@ -182,8 +189,9 @@ CameraDescription parse_camera(const JsonNode& node) {
 }
 
 WorldDescription parse_world(const JsonNode& node, SceneDescription& scene) {
-  node.expect_keys({"color", "strength", "image", "cube", "flip", "up", "rotation"});
+  node.expect_keys({"color", "strength", "image", "cube", "flip", "up", "rotation", "mist"});
   WorldDescription world;
+  if (const auto mist = node.find("mist")) parse_mist(*mist, world);
   const auto image = node.find("image");
   const auto cube = node.find("cube");
   if (image && cube) node.fail("has both 'image' and 'cube'; use one of them");

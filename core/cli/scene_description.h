@@ -60,7 +60,9 @@ struct LightDescription {
 
 struct ObjectDescription {
   std::string name;
-  std::string unit;  // empty: its own name
+  std::string unit;   // empty: its own name
+  std::string asset;  // empty: its own name
+  int pass_index = 0;
   int mesh = kNoIndex;
   std::vector<int> materials;  // by slot; kNoIndex: the default grey
   mat4x3 world_from_object{1.0f};
@@ -96,6 +98,9 @@ struct WorldDescription {
   vec3 color{0.0f};
   int textures[6] = {kNoIndex, kNoIndex, kNoIndex, kNoIndex, kNoIndex, kNoIndex};
   mat3 map_from_world{1.0f};
+  float mist_start = 0.0f;
+  float mist_depth = 0.0f;
+  float mist_falloff = 1.0f;
 };
 
 struct SceneDescription {

@@ -5,9 +5,9 @@
 
 namespace kestrel {
 
-void GBuffer::resize(int new_width, int new_height) {
-  width = new_width;
-  height = new_height;
+void GBuffer::resize(const FrameInputs& inputs) {
+  width = inputs.region.width;
+  height = inputs.region.height;
   const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
   position.resize(n);
   normal.resize(n);
@@ -22,6 +22,16 @@ void GBuffer::resize(int new_width, int new_height) {
   object.resize(n);
   material.resize(n);
   lighting.resize(n);
+  uv.resize(inputs.keep_uv ? n : 0);
+}
+
+std::span<const SurfaceLayer> layers_behind(const GBuffer& gbuffer, size_t pixel) {
+  const auto& all = gbuffer.behind;
+  const auto first = std::partition_point(all.begin(), all.end(),
+                                          [&](const auto& layer) { return layer.pixel < pixel; });
+  const auto last =
+      std::find_if(first, all.end(), [&](const auto& layer) { return layer.pixel != pixel; });
+  return {first, last};
 }
 
 void TraceCounts::reset(size_t units) {

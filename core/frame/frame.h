@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,8 @@ struct FrameInputs {
   vec2 subpixel{0.0f};                 // sample position, offset from the pixel's centre, in pixels
   float budget_ms = 0.0f;              // T for this sample: the frame's share; 0 means no limit
   Region region{0, 0, width, height};  // what is rendered now; the planes have its size
+  bool keep_uv = false;                // fill GBuffer::uv
+  bool keep_behind = false;            // fill GBuffer::behind
 };
 
 /// Planes are written whole by whoever fills them, in parallel: new memory is left uninitialised,
@@ -54,6 +57,15 @@ struct UninitializedAllocator : std::allocator<T> {
 template <typename T>
 using Plane = std::vector<T, UninitializedAllocator<T>>;
 
+/// A surface that shows through another one.
+struct SurfaceLayer {
+  uint32_t pixel;     // index in the region
+  uint32_t object;    // as in the G-buffer
+  uint32_t material;  // as in the G-buffer
+  vec3 position;      // world space
+  float coverage;     // share of the pixel's sample that it covers, 0…1
+};
+
 /// Stage 1's output (paper, Table 2), filled by the rasteriser or by primary rays.
 /// Where `object == 0` nothing was hit: lighting holds the world, the other planes zero.
 struct GBuffer {
@@ -63,19 +75,21 @@ struct GBuffer {
   Plane<vec3> normal;            // world space, unit, after normal maps, on the mesh's own side
   Plane<vec3> normal_geometric;  // world space, unit, of the triangle, on the mesh's own side
   Plane<vec3> emission;
-  Plane<vec3> ambient;          // material ambient, without the global ambient light
-  Plane<vec4> diffuse;          // A: alpha after the material's alpha mode (1 where opaque)
-  Plane<vec4> specular;         // A: exponent, 0 … 1 for 1 … 255
-  Plane<vec3> optical;          // R reflectivity, G index of refraction, B opacity incl. alpha
-  Plane<float> heuristic_mask;  // stage 2: 1 selected, 0 not
-  Plane<float> depth;           // reversed z: 1 at the near plane, 0 at the far one and beyond
-  Plane<uint32_t> object;       // scene object index + 1, 0 = nothing
-  Plane<uint32_t> material;     // scene material index (0 also where nothing)
-  Plane<vec3> lighting;         // P-buffer: L, lit without shadows, reflections, refractions
-  Plane<uint8_t> holdout;       // 1: a holdout is in front, and so nothing; empty without holdouts
+  Plane<vec3> ambient;               // material ambient, without the global ambient light
+  Plane<vec4> diffuse;               // A: alpha after the material's alpha mode (1 where opaque)
+  Plane<vec4> specular;              // A: exponent, 0 … 1 for 1 … 255
+  Plane<vec3> optical;               // R reflectivity, G index of refraction, B opacity incl. alpha
+  Plane<float> heuristic_mask;       // stage 2: 1 selected, 0 not
+  Plane<float> depth;                // reversed z: 1 at the near plane, 0 at the far one and beyond
+  Plane<uint32_t> object;            // scene object index + 1, 0 = nothing
+  Plane<uint32_t> material;          // scene material index (0 also where nothing)
+  Plane<vec3> lighting;              // P-buffer: L, lit without shadows, reflections, refractions
+  Plane<uint8_t> holdout;            // 1: a holdout is in front, and so nothing; empty without any
+  Plane<vec2> uv;                    // of the mesh, before the material's tiling; may be left out
+  std::vector<SurfaceLayer> behind;  // by pixel, front to back; may be left out
 
-  /// The planes of every frame; `holdout` stays as it is.
-  void resize(int new_width, int new_height);
+  /// The planes of every frame, and `uv`; `holdout` and `behind` stay as they are.
+  void resize(const FrameInputs& inputs);
 
   /// Makes a pixel show nothing, in front of this radiance.
   void set_nothing(size_t i, const vec3& radiance) {
@@ -85,8 +99,21 @@ struct GBuffer {
     depth[i] = 0.0f;
     object[i] = material[i] = 0;
     lighting[i] = radiance;
+    if (!uv.empty()) uv[i] = vec2(0.0f);
   }
 };
+
+/// Share that a surface covers of what lies straight behind it, 0…1: glass that bends the view
+/// covers all of it.
+inline float straight_coverage(const Scene& scene, const vec3& optical, float alpha) {
+  return optical.y == scene.settings.environment_ior ? optical.z : alpha;
+}
+inline float coverage(const Scene& scene, const GBuffer& gbuffer, size_t i) {
+  return straight_coverage(scene, gbuffer.optical[i], gbuffer.diffuse[i].w);
+}
+
+/// The layers behind the surface of a pixel.
+std::span<const SurfaceLayer> layers_behind(const GBuffer& gbuffer, size_t pixel);
 
 /// Bits of what stage 3 does for a unit.
 enum EffectBits : uint8_t { kShadows = 1, kReflections = 2, kRefractions = 4 };

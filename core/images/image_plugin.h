@@ -8,7 +8,7 @@
 
 extern "C" {
 
-#define KESTREL_IMAGE_PLUGIN_ABI 2
+#define KESTREL_IMAGE_PLUGIN_ABI 3
 
 /// A decoded image. Row 0 at the bottom, straight alpha; 8-bit texels where the file has 8 bits a
 /// channel, else float; both as stored, without colour conversion.
@@ -36,6 +36,21 @@ struct KestrelPluginLayer {
   const float* pixels;   // linear; alpha associated (premultiplied)
 };
 
+/// Text that goes with the layers.
+struct KestrelPluginAttribute {
+  const char* name;
+  const char* value;
+};
+
+struct KestrelPluginPicture {
+  int width;
+  int height;
+  const struct KestrelPluginLayer* layers;
+  size_t layer_count;
+  const struct KestrelPluginAttribute* attributes;
+  size_t attribute_count;
+};
+
 struct KestrelImagePlugin {
   int abi;              // KESTREL_IMAGE_PLUGIN_ABI
   const char* version;  // "OpenImageIO 2.4.7"
@@ -45,10 +60,10 @@ struct KestrelImagePlugin {
   const char* (*read_memory)(const void* data, size_t byte_count, struct KestrelPluginImage* image);
 
   /// .exr: all layers in one part, channels NAME.LETTER (Combined as plain R, G, B, A), half float
-  /// except Depth, Position and ids, ZIP; .png: the first layer, sRGB, 8 bits, straight
-  /// alpha. No metadata of the machine. The file appears whole or not at all.
-  const char* (*write_file)(const char* path, int width, int height,
-                            const struct KestrelPluginLayer* layers, size_t layer_count);
+  /// except what counts, measures or names something, ZIP; the attributes; .png: the first layer,
+  /// sRGB, 8 bits, straight alpha. No metadata of the machine. The file appears whole or not at
+  /// all.
+  const char* (*write_file)(const char* path, const struct KestrelPluginPicture* picture);
 };
 
 typedef const struct KestrelImagePlugin* (*KestrelImagePluginFunction)(void);

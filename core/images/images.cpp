@@ -156,15 +156,19 @@ void read_memory(const void* data, size_t byte_count, Texture& texture) {
   target.move_into(texture);
 }
 
-void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers) {
+void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers,
+                const std::vector<Attribute>& attributes) {
   const KestrelImagePlugin& table = require_plugin();
   std::vector<KestrelPluginLayer> rows;
   rows.reserve(layers.size());
   for (const Layer& layer : layers) {
     rows.push_back({layer.name.c_str(), layer.channels.c_str(), layer.pixels});
   }
-  if (const char* reason =
-          table.write_file(path.c_str(), width, height, rows.data(), rows.size())) {
+  std::vector<KestrelPluginAttribute> texts;
+  for (const auto& [name, value] : attributes) texts.push_back({name.c_str(), value.c_str()});
+  const KestrelPluginPicture picture{width,       height,       rows.data(),
+                                     rows.size(), texts.data(), texts.size()};
+  if (const char* reason = table.write_file(path.c_str(), &picture)) {
     fail(ErrorCode::file, "'{}' could not be written: {}.", path, reason);
   }
 }

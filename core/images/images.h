@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -27,9 +28,13 @@ struct Layer {
   const float* pixels;
 };
 
-/// Writes .exr (all layers) or .png (the first layer, in sRGB), whole or not at all. Throws
-/// Error(file), or Error(unsupported) without the plug-in.
-void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers);
+/// Name and value.
+using Attribute = std::pair<std::string, std::string>;
+
+/// Writes .exr (all layers and attributes) or .png (the first layer, in sRGB), whole or not at all.
+/// Throws Error(file), or Error(unsupported) without the plug-in.
+void write_file(const std::string& path, int width, int height, const std::vector<Layer>& layers,
+                const std::vector<Attribute>& attributes = {});
 
 /// The one stand-in for every image that cannot be had: 1x1 magenta, opaque.
 void fill_missing(Texture& texture);

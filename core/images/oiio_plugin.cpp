@@ -46,9 +46,8 @@ const char* read_memory_c(const void* data, size_t byte_count, KestrelPluginImag
   return reason_of([&] { read_memory(data, byte_count, *image); });
 }
 
-const char* write_file_c(const char* path, int width, int height, const KestrelPluginLayer* layers,
-                         size_t layer_count) {
-  return reason_of([&] { write_file(path, width, height, layers, layer_count); });
+const char* write_file_c(const char* path, const KestrelPluginPicture* picture) {
+  return reason_of([&] { write_file(path, *picture); });
 }
 
 }  // namespace

@@ -19,7 +19,6 @@ void read_file(const char* path, KestrelPluginImage& image);
 void read_memory(const void* data, size_t byte_count, KestrelPluginImage& image);
 
 /// Throws std::runtime_error with the reason; then the file is as it was before.
-void write_file(const char* path, int width, int height, const KestrelPluginLayer* layers,
-                size_t layer_count);
+void write_file(const char* path, const KestrelPluginPicture& picture);
 
 }  // namespace kestrel::oiio

@@ -36,11 +36,15 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-/// Positions, depths and ids need all of a float's digits; colours and directions do not.
+/// Positions, depths and whatever counts or names something need all of a float's digits; colours
+/// and directions do not.
 bool needs_float(const KestrelPluginLayer& layer) {
   const std::string_view name = layer.name;
-  return name.find("Depth") != name.npos || name.find("Position") != name.npos ||
-         (name.size() >= 2 && name.substr(name.size() - 2) == "Id");
+  const auto ends_with = [name](std::string_view end) {
+    return name.size() >= end.size() && name.substr(name.size() - end.size()) == end;
+  };
+  return name == "UV" || name.find("Depth") != name.npos || name.find("Position") != name.npos ||
+         name.substr(0, 6) == "Crypto" || ends_with("Id") || ends_with("Index");
 }
 
 std::string channel_name(const KestrelPluginLayer& layer, char letter) {
@@ -70,8 +74,10 @@ void finish(ImageOutput& output) {
   if (!output.close()) throw std::runtime_error(tidy(output.geterror(), "the encoder failed"));
 }
 
-std::vector<unsigned char> encode_exr(int width, int height, const KestrelPluginLayer* layers,
-                                      size_t layer_count) {
+std::vector<unsigned char> encode_exr(const KestrelPluginPicture& picture) {
+  const int width = picture.width, height = picture.height;
+  const KestrelPluginLayer* layers = picture.layers;
+  const size_t layer_count = picture.layer_count;
   ImageSpec spec(width, height, 0, TypeDesc::HALF);
   for (size_t i = 0; i < layer_count; ++i) {
     const TypeDesc type = needs_float(layers[i]) ? TypeDesc::FLOAT : TypeDesc::HALF;
@@ -83,6 +89,9 @@ std::vector<unsigned char> encode_exr(int width, int height, const KestrelPlugin
   }
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", "");  // else the writer puts the time there
+  for (size_t i = 0; i < picture.attribute_count; ++i) {
+    spec.attribute(picture.attributes[i].name, picture.attributes[i].value);
+  }
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const auto output = open_writer("image.exr", spec, memory);
@@ -209,14 +218,13 @@ void save(const std::string& path, const std::vector<unsigned char>& bytes) {
 
 }  // namespace
 
-void write_file(const char* path, int width, int height, const KestrelPluginLayer* layers,
-                size_t layer_count) {
-  if (layer_count == 0) throw std::runtime_error("there is no layer to write");
+void write_file(const char* path, const KestrelPluginPicture& picture) {
+  if (picture.layer_count == 0) throw std::runtime_error("there is no layer to write");
   const std::string extension = lower_extension(path);
   if (extension == ".exr") {
-    save(path, encode_exr(width, height, layers, layer_count));
+    save(path, encode_exr(picture));
   } else if (extension == ".png") {
-    save(path, encode_png(width, height, layers[0]));
+    save(path, encode_png(picture.width, picture.height, picture.layers[0]));
   } else {
     throw std::runtime_error("its ending '" + extension + "' is not known; use .exr or .png");
   }

@@ -70,6 +70,7 @@ struct Material {
   bool casts_shadow = true;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
+  int pass_index = 0;  // for compositing
 
   bool reflective() const { return optical.x > 0.0f; }
   bool refractive() const { return optical.z < 1.0f || alpha_mode == AlphaMode::blend; }
@@ -116,6 +117,8 @@ struct Object {
   bool flips_orientation = false;  // negative determinant
   uint8_t hidden_from = 0;         // RayBits that do not meet it
   bool holdout = false;            // for camera rays a hole in the picture
+  int pass_index = 0;              // for compositing
+  std::string asset;               // what it is a part of; its own name where it is none
 };
 
 /// What the heuristic selects: an object, or all instances of one instancer.
@@ -141,6 +144,13 @@ struct Camera {
 
 enum class WorldKind : uint8_t { color, equirectangular, cube };
 
+/// How the Mist pass rises from 0 to 1 with the distance from the camera.
+struct Mist {
+  float start = 0.0f;    // metres
+  float depth = 0.0f;    // metres from the start to 1; 0 or less: no surface has any
+  float falloff = 1.0f;  // exponent: 1 linear, 2 quadratic, 0.5 inverse quadratic
+};
+
 /// What lies behind everything. Directions are turned by `map_from_world` before the lookup.
 /// The formulas are in world.h.
 struct World {
@@ -148,6 +158,7 @@ struct World {
   vec3 color{0.0f};  // radiance, or factor on the textures
   int textures[6] = {kNone, kNone, kNone, kNone, kNone, kNone};  // cube: +X -X +Y -Y +Z -Z
   mat3 map_from_world{1.0f};
+  Mist mist;
 };
 
 struct Scene {

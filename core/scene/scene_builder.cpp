@@ -105,6 +105,7 @@ void SceneBuilder::set_object(uint64_t id, ObjectInput input) {
   require_id(id, "object");
   name_by_id(input.name, "object", id);
   if (input.unit.empty()) input.unit = input.name;
+  if (input.asset.empty()) input.asset = input.name;
   check_matrix(input.world_from_object, fmt::format("Object '{}'", input.name),
                "world_from_object");
   if (ObjectEntry* known = objects_.find(id)) {
@@ -274,6 +275,8 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
   }
   Object object;
   object.name = input.name;
+  object.asset = input.asset;
+  object.pass_index = input.pass_index;
   object.world_from_object = input.world_from_object;
   object.flips_orientation = glm::determinant(mat3(input.world_from_object)) < 0.0f;
   object.hidden_from = input.hidden_from;

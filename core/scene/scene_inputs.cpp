@@ -148,6 +148,9 @@ Camera checked_camera(Camera camera) {
 void check_world(const WorldInput& input) {
   const Checker check("The world");
   check.finite("color", input.values.color);
+  check.finite("mist_start", input.values.mist.start);
+  check.finite("mist_depth", input.values.mist.depth);
+  check.finite("mist_falloff", input.values.mist.falloff);
   const int count = texture_count(input.values.kind);
   if (count == 0) return;
   for (int i = 0; i < 3; ++i) check.finite("map_from_world", input.values.map_from_world[i]);

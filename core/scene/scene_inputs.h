@@ -37,6 +37,8 @@ struct ObjectInput {
   std::string unit;         // empty: its own name
   uint8_t hidden_from = 0;  // RayBits
   bool holdout = false;
+  int pass_index = 0;
+  std::string asset;  // empty: its own name
 };
 
 /// `values.textures` is not read; 0 means none.

@@ -22,8 +22,7 @@ vec3 safe_normalize(const vec3& v, const vec3& fallback) {
 }
 
 vec2 texture_uv(const Mesh& mesh, const Material& material, const SurfaceHit& hit) {
-  const vec2 uv = mesh.corner_uvs.empty() ? vec2(0.0f) : interpolate(mesh.corner_uvs, hit);
-  return material.offset + uv * material.tiling;
+  return material.offset + mesh_uv(mesh, hit) * material.tiling;
 }
 
 vec4 textured(const Scene& scene, const vec4& color, int texture, const vec2& uv) {
@@ -136,6 +135,10 @@ Surface evaluate(const Scene& scene, const Point& point, const mat3& normal_from
 }
 
 }  // namespace
+
+vec2 mesh_uv(const Mesh& mesh, const SurfaceHit& hit) {
+  return mesh.corner_uvs.empty() ? vec2(0.0f) : interpolate(mesh.corner_uvs, hit);
+}
 
 void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_object,
                        std::span<const SurfaceHit> hits, Surface* out) {

@@ -35,6 +35,9 @@ inline int material_of(const Scene& scene, const Object& object, uint32_t triang
   return object.materials[glm::min<size_t>(slot, object.materials.size() - 1)];
 }
 
+/// UV of the mesh at a hit; (0, 0) where it has none.
+vec2 mesh_uv(const Mesh& mesh, const SurfaceHit& hit);
+
 /// How many hits evaluate_surfaces() takes at once.
 inline constexpr size_t kMaxHits = 8;
 

@@ -155,9 +155,9 @@ void RasterPasses::light() const {
 
 void RasterPasses::run(const FrameInputs& inputs, GBuffer& out) {
   begin_frame(inputs);
-  if (!targets_.has_size(inputs.width, inputs.height)) {
+  if (!targets_.fits(inputs)) {
     targets_ = RasterTargets();
-    targets_ = RasterTargets(inputs.width, inputs.height);
+    targets_ = RasterTargets(inputs);
   }
   fill_gbuffer(inputs);
   light();
@@ -223,7 +223,7 @@ void RasterStage::update(const std::shared_ptr<const Scene>& scene) {
 }
 
 void RasterStage::run(const FrameInputs& inputs, GBuffer& out) {
-  out.resize(inputs.width, inputs.height);
+  out.resize(inputs);
   if (inputs.region.pixels() == 0) return;
   impl_->context->run([&] { impl_->passes->run(inputs, out); });
   punch_holdouts(inputs, out);

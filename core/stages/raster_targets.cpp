@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "base/error.h"
 #include "gl/debug.h"
@@ -42,10 +43,11 @@ void read_plane(const gl::Texture2D& target, GLenum format, GLenum type, Plane<T
 
 }  // namespace
 
-RasterTargets::RasterTargets(int width, int height) : width_(width), height_(height) {
-  require_size(width, height);
+RasterTargets::RasterTargets(const FrameInputs& inputs)
+    : width_(inputs.width), height_(inputs.height), keep_uv_(inputs.keep_uv) {
+  require_size(width_, height_);
   const auto target = [&](const char* name, GLenum format) {
-    return gl::Texture2D(name, format, width, height);
+    return gl::Texture2D(name, format, width_, height_);
   };
   // Table 2, with reasons where the format is not the paper's. The heuristic mask (GL_R32F there)
   // has no target: stage 2 runs on the processor and fills GBuffer::heuristic_mask.
@@ -64,11 +66,12 @@ RasterTargets::RasterTargets(int width, int height) : width_(width), height_(hei
   // Not RGBA8: holds the index of refraction as it is, without an encoding.
   optical_ = target("optical", GL_RGBA16F);
   // Not in the paper: object and material of each pixel, for areas, masks and ray tracing.
-  id_ = target("id", GL_RG32UI);
+  // The mesh's UVs, where they are wanted, share it as the bits of two floats.
+  id_ = target("id", keep_uv_ ? GL_RGBA32UI : GL_RG32UI);
   // Not DEPTH_COMPONENT32F: the stencil keeps occlusion queries from counting a pixel twice.
   depth_ = target("depth", GL_DEPTH32F_STENCIL8);
   lighting_ = target("lighting", GL_RGBA16F);
-  gl::check_errors(fmt::format("allocating targets of {}x{}", width, height));
+  gl::check_errors(fmt::format("allocating targets of {}x{}", width_, height_));
 
   gbuffer_ = gl::Framebuffer(
       "G-buffer",
@@ -122,12 +125,22 @@ void RasterTargets::read(GBuffer& out) {
   read_plane(lighting_, GL_RGB, GL_FLOAT, out.lighting);
 
   staging_.resize(pixels * sizeof(vec4));
-  id_.read(GL_RG_INTEGER, GL_UNSIGNED_INT, staging_.data(), pixels * sizeof(uvec2));
-  const auto* ids = reinterpret_cast<const uvec2*>(staging_.data());
-  for_each_pixel(pixels, [&](size_t i) {
-    out.object[i] = ids[i].x;
-    out.material[i] = ids[i].y;
-  });
+  if (keep_uv_) {
+    id_.read(GL_RGBA_INTEGER, GL_UNSIGNED_INT, staging_.data(), pixels * sizeof(uvec4));
+    const auto* ids = reinterpret_cast<const uvec4*>(staging_.data());
+    for_each_pixel(pixels, [&](size_t i) {
+      out.object[i] = ids[i].x;
+      out.material[i] = ids[i].y;
+      out.uv[i] = {std::bit_cast<float>(ids[i].z), std::bit_cast<float>(ids[i].w)};
+    });
+  } else {
+    id_.read(GL_RG_INTEGER, GL_UNSIGNED_INT, staging_.data(), pixels * sizeof(uvec2));
+    const auto* ids = reinterpret_cast<const uvec2*>(staging_.data());
+    for_each_pixel(pixels, [&](size_t i) {
+      out.object[i] = ids[i].x;
+      out.material[i] = ids[i].y;
+    });
+  }
   normals_.read(GL_RGBA, GL_FLOAT, staging_.data(), pixels * sizeof(vec4));
   const auto* normals = reinterpret_cast<const vec4*>(staging_.data());
   for_each_pixel(pixels, [&](size_t i) {

@@ -15,8 +15,12 @@ class RasterTargets {
  public:
   RasterTargets() = default;
   /// Throws Error(unsupported) where the size is beyond the driver's.
-  RasterTargets(int width, int height);
+  explicit RasterTargets(const FrameInputs& inputs);
 
+  /// Whether a frame of these inputs can be drawn.
+  bool fits(const FrameInputs& inputs) const {
+    return has_size(inputs.width, inputs.height) && keep_uv_ == inputs.keep_uv;
+  }
   bool has_size(int width, int height) const { return width_ == width && height_ == height; }
 
   /// All targets empty, nothing but the G-buffer bound for drawing.
@@ -33,6 +37,7 @@ class RasterTargets {
  private:
   int width_ = 0;
   int height_ = 0;
+  bool keep_uv_ = false;
   gl::Texture2D position_, normals_, emission_, ambient_, diffuse_, specular_, optical_, id_;
   gl::Texture2D depth_, lighting_;
   gl::Framebuffer gbuffer_, pbuffer_, occlusion_;

@@ -24,7 +24,8 @@ layout(location = 3) out vec4 out_ambient;
 layout(location = 4) out vec4 out_diffuse;
 layout(location = 5) out vec4 out_specular;
 layout(location = 6) out vec4 out_optical;
-layout(location = 7) out uvec2 out_id;
+// Object, material and, where the target has room for them, the bits of the mesh's UV.
+layout(location = 7) out uvec4 out_id;
 
 void main() {
   GpuMaterial m = materials[material_index];
@@ -42,5 +43,5 @@ void main() {
   out_diffuse = min(s.diffuse, kLargestHalf);
   out_specular = min(s.specular, kLargestHalf);
   out_optical = vec4(min(s.optical, kLargestHalf), 0.0);
-  out_id = uvec2(object.id, material_index);
+  out_id = uvec4(object.id, material_index, floatBitsToUint(mesh_uv));
 }

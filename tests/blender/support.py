@@ -98,6 +98,18 @@ class SceneTest(unittest.TestCase):
             mesh.materials.append(material)
         return self.link(name, mesh, matrix)
 
+    def compositor(self):
+        """An empty compositor: (tree, socket of the finished picture)."""
+        if hasattr(self.scene, "node_tree"):
+            self.scene.use_nodes = True
+            tree = self.scene.node_tree
+            tree.nodes.clear()
+            return tree, tree.nodes.new("CompositorNodeComposite").inputs["Image"]
+        tree = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")  # 5.0 on
+        tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        self.scene.compositing_node_group = tree
+        return tree, tree.nodes.new("NodeGroupOutput").inputs[0]
+
     # ---- pictures ----
 
     def render(self, engine_id="KESTREL"):

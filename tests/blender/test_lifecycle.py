@@ -192,13 +192,13 @@ class PropertiesTest(SceneTest):
     def test_survive_saving(self):
         self.scene.kestrel.samples = 7
         self.owner({"scope": "object"}).relevance = 4.0
-        self.scene.view_layers[0].kestrel.passes = {"Shadow", "ObjectId"}
+        self.scene.view_layers[0].kestrel.passes = {"Lighting", "ObjectId"}
         path = str(self.folder / "saved.blend")
         bpy.ops.wm.save_as_mainfile(filepath=path)
         bpy.ops.wm.open_mainfile(filepath=path)
         self.assertEqual(bpy.context.scene.kestrel.samples, 7)
         self.assertEqual(bpy.data.objects["Thing"].kestrel.relevance, 4.0)
-        self.assertEqual(bpy.context.view_layer.kestrel.passes, {"Shadow", "ObjectId"})
+        self.assertEqual(bpy.context.view_layer.kestrel.passes, {"Lighting", "ObjectId"})
 
     def test_sessions_go_when_a_file_is_opened(self):
         self.camera()

@@ -104,7 +104,7 @@ bpy.ops.wm.save_as_mainfile(filepath={again!r})
         self.camera()
         self.cube(material=diffuse("Grey", (0.5, 0.5, 0.5))).kestrel.relevance = 4.0
         self.scene.kestrel.samples, self.scene.kestrel.budget_ms = 7, 12.5
-        self.scene.view_layers[0].kestrel.passes = {"Shadow"}
+        self.scene.view_layers[0].kestrel.passes = {"Lighting"}
         bpy.data.materials["Grey"].kestrel.casts_shadow = False
         path, again = (str(self.folder / name) for name in ("kestrel.blend", "again.blend"))
         bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -123,5 +123,5 @@ bpy.ops.wm.save_as_mainfile(filepath={again!r})
         self.assertEqual((scene.frame_end, scene.render.engine), (77, "KESTREL"))
         self.assertEqual((scene.kestrel.samples, scene.kestrel.budget_ms), (7, 12.5))
         self.assertEqual(bpy.data.objects["Cube"].kestrel.relevance, 4.0)
-        self.assertEqual(bpy.context.view_layer.kestrel.passes, {"Shadow"})
+        self.assertEqual(bpy.context.view_layer.kestrel.passes, {"Lighting"})
         self.assertFalse(bpy.data.materials["Grey"].kestrel.casts_shadow)

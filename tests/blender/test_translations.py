@@ -10,7 +10,7 @@ from test_panels import PanelCase, kestrel_properties
 # Blender's own words that one of the languages writes as English does.
 SAME = {"Albedo", "Angle", "Asset", "Cryptomatte", "Debug", "Diffuse", "Emission", "Film",
         "Material", "Normal", "Passes", "Performance", "Position", "Surface", "Threads",
-        "Transmission", "Transparent", "Type", "UV"}
+        "Transmission", "Transparent", "Type", "UV", "Z"}
 
 
 class TranslationTest(PanelCase):

@@ -24,7 +24,8 @@ import install_addon
 STEP, MODULE, FOLDER, *REST = sys.argv[sys.argv.index("--") + 1:]
 FOLDER = Path(FOLDER)
 SMALL_PX = (160, 90)
-PLAIN = ("Emit", "Specular", "Ambient", "HeuristicMask")  # may hold one value in the showcase
+# May hold one value everywhere in the showcase.
+PLAIN = ("Emission", "Specular", "Ambient", "HeuristicMask", "UV")
 
 
 def tell(text):
@@ -110,6 +111,9 @@ def passes():
         if item.toggle:
             setattr(layer, item.toggle, True)
     layer.kestrel.passes = {item.name for item in table.OPTIONAL}
+    for collection in (bpy.data.objects, bpy.data.materials):
+        for index, item in enumerate(collection):
+            item.pass_index = index
     use_format("OPEN_EXR_MULTILAYER", color_mode="RGBA", color_depth="32", exr_codec="ZIP")
     path = FOLDER / "passes.exr"
     bpy.context.scene.render.filepath = str(path)
@@ -117,11 +121,14 @@ def passes():
     data = path.read_bytes()
     attributes, offset = exr.read_header(data)
     planes = exr.read_planes(data, offset, attributes)
-    wanted = [item.blender_name for item in table.enabled(layer)]
-    for name in wanted:
+    wanted = []
+    for item in table.enabled(layer):
+        name = part("compat").pass_name(bpy.context.scene, item.blender_name)
+        wanted.append(name)
         channels = [plane for channel, plane in planes.items() if f".{name}." in channel]
         expect(channels, f"the pass {name} is not in the file")
-        expect(name in PLAIN or any(plane.max() > plane.min() for plane in channels),
+        expect(item.name in PLAIN or item.depth > 0
+               or any(plane.max() > plane.min() for plane in channels),
                f"the pass {name} has one value everywhere")
     tell(f"{len(wanted)} passes: {', '.join(wanted)}")
 

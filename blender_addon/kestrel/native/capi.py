@@ -89,6 +89,7 @@ class Material(Structure):
         ("casts_shadow", c_bool),
         ("alpha_mode", c_int32),
         ("alpha_cutoff", c_float),
+        ("pass_index", c_int32),
     ]
 
 
@@ -118,6 +119,8 @@ class Object(Structure):
         ("unit", c_char_p),
         ("hidden_from", c_uint32),
         ("holdout", c_bool),
+        ("pass_index", c_int32),
+        ("asset", c_char_p),
     ]
 
 
@@ -140,6 +143,9 @@ class World(Structure):
         ("color", c_float * 3),
         ("textures", c_uint64 * 6),
         ("map_from_world", c_float * 9),
+        ("mist_start", c_float),
+        ("mist_depth", c_float),
+        ("mist_falloff", c_float),
     ]
 
 
@@ -193,6 +199,8 @@ FUNCTIONS = {
     "kestrelReadPass": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelReadPassSoFar": (c_int, [c_void_p, c_char_p, float_p, c_size_t]),
     "kestrelGetPassPixels": (float_p, [c_void_p, c_char_p]),
+    "kestrelGetCryptomatteHash": (c_uint32, [c_char_p]),
+    "kestrelGetCryptomatteManifest": (c_char_p, [c_void_p, c_char_p]),
     "kestrelGetStats": (c_char_p, [c_void_p]),
     "kestrelWriteImage": (c_int, [c_void_p, c_char_p, c_char_p]),
 }
@@ -295,6 +303,10 @@ class Library:
         self.c.kestrelDefaultMaterial(byref(material))
         return material
 
+    def cryptomatte_hash(self, name):
+        """The 32-bit number that Cryptomatte makes of a name."""
+        return self.c.kestrelGetCryptomatteHash(encode(name))
+
     def default_light(self):
         light = Light()
         self.c.kestrelDefaultLight(byref(light))
@@ -358,12 +370,14 @@ class Scene:
     def set_light(self, ident, light):
         self.library.check(self.c.kestrelSetLight(self.handle, ident, byref(light)))
 
-    def set_object(self, ident, name, unit, mesh, materials, visibility, world_from_object):
+    def set_object(self, ident, name, unit, mesh, materials, visibility, pass_index, asset,
+                   world_from_object):
         """`materials` are ids by slot, `visibility` the RAYS_… that do not meet it and whether it is
         a holdout, `world_from_object` 12 floats, column by column."""
         slots = (c_uint64 * len(materials))(*materials)
         item = Object(encode(name), mesh, slots, len(materials),
-                      (c_float * 12)(*world_from_object), encode(unit), *visibility)
+                      (c_float * 12)(*world_from_object), encode(unit), *visibility, pass_index,
+                      encode(asset))
         self.library.check(self.c.kestrelSetObject(self.handle, ident, byref(item)))
 
     def set_object_transform(self, ident, world_from_object):
@@ -456,6 +470,13 @@ class Renderer:
         not there yet left alone. From any thread."""
         self.library.check(self.c.kestrelReadPassSoFar(
             self.handle, encode(name), pointer(pixels, float_p, np.float32), pixels.size))
+
+    def cryptomatte_manifest(self, layer):
+        """JSON text: the ids of the names in the last frame's passes "CryptoObject" and so on."""
+        text = self.c.kestrelGetCryptomatteManifest(self.handle, encode(layer))
+        if text is None:
+            raise self.library.last_error()
+        return text.decode()
 
     def stats(self):
         """JSON text about the last frame, None before the first."""

@@ -345,7 +345,8 @@ def _one_mapping(surface, material, warn):
 def describe(export, material, surface):
     """The capi.Material of a Surface; sends its textures."""
     item = export.session.scene.library.default_material()
-    item.name = capi.encode(material.name_full)
+    item.name = capi.encode(material.name)  # as Cryptomatte has it, without the library
+    item.pass_index = material.pass_index
     item.emission[:] = surface.emission.color
     item.ambient[:] = surface.ambient.color
     item.diffuse[:] = (*surface.diffuse.color, surface.alpha)

@@ -27,6 +27,15 @@ def columns(matrix):
     return (*x[:3], *y[:3], *z[:3], *place[:3])
 
 
+def identity_of(obj):
+    """(name, pass index, asset's name): what compositing tells an object and its hair by. The names
+    are Cryptomatte's, without the library; the asset is the topmost parent, or the object."""
+    top = obj
+    while top.parent is not None:
+        top = top.parent
+    return obj.name, obj.pass_index, top.name
+
+
 class Objects:
     """Sends the objects of one evaluation."""
 
@@ -79,17 +88,18 @@ class Objects:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
 
-    def add_geometry(self, owner, key, name, mesh, materials, visible, matrix):
+    def add_geometry(self, owner, key, mesh, materials, identity, visible, matrix):
         unit = owner.name_full
         ident = self.export.new_id(capi.KIND_OBJECT, key)
-        self.export.put_object(ident, (name, unit, mesh, materials, visible), matrix)
+        name, *rest = identity
+        self.export.put_object(ident, (name, unit, mesh, materials, visible, *rest), matrix)
         if unit not in self.units:
             self.units.add(unit)
             self.unit_settings(ident, unit, owner)
 
     def shape(self, obj, original, with_strands):
-        """((part, name, mesh id, material ids by slot), ...) of an evaluated object: itself, whose
-        part is empty, and the strands of its particle systems."""
+        """((part, mesh id, material ids by slot, identity), ...) of an evaluated object: itself,
+        whose part is empty, and the strands of its particle systems."""
         key = (self.key_of(original), obj.data.as_pointer(), with_strands)
         found = self.shapes.get(key)
         if found is None:
@@ -98,13 +108,14 @@ class Objects:
                 mesh = sync_curves(self.export, obj, self.scene)
             else:
                 mesh = sync_mesh(self.export, obj)
-            parts = [(b"", obj.name_full, mesh, slots)]
+            identity = identity_of(obj)
+            parts = [(b"", mesh, slots, identity)]
             if with_strands and obj.particle_systems:
                 for name, mesh, slot in sync_strands(self.export, obj, self.scene,
                                                      self.for_viewport):
-                    parts.append((b"/hair/" + capi.encode(name), name, mesh,
-                                  slots[min(slot, len(slots) - 1):][:1]))
-            found = self.shapes[key] = tuple(part for part in parts if part[2])
+                    parts.append((b"/hair/" + capi.encode(name), mesh,
+                                  slots[min(slot, len(slots) - 1):][:1], identity))
+            found = self.shapes[key] = tuple(part for part in parts if part[1])
         return found
 
     def visibility_of(self, obj, owner):

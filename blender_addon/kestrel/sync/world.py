@@ -15,6 +15,9 @@ from . import nodes
 from .image import cached_mean, mean_radiance, sync_texture
 
 
+MIST_FALLOFF = {"QUADRATIC": 2.0, "LINEAR": 1.0, "INVERSE_QUADRATIC": 0.5}
+
+
 def _background(reader, socket, stack=(), depth=0):
     """The Background node of a world's tree, with its group stack, or (None, ())."""
     node, _, above = reader.source(socket, stack)
@@ -103,6 +106,10 @@ def sync_world(export, world):
     item.kind = capi.WORLD_COLOR
     item.map_from_world[:] = (1, 0, 0, 0, 1, 0, 0, 0, 1)
     ambient = nodes.BLACK if world is None else _fill(export, world, item)
+    if world is not None:
+        mist = world.mist_settings
+        item.mist_start, item.mist_depth = mist.start, mist.depth
+        item.mist_falloff = MIST_FALLOFF[mist.falloff]
     export.note("world", bytes(item))
     export.scene.set_world(item)
     return ambient

@@ -3,34 +3,90 @@
 
 import bpy
 
+from .. import passes
 from .common import KestrelPanel
 
+DENOISING = ("DenoisingNormal", "DenoisingAlbedo")
 
-class KESTREL_VIEW_LAYER_PT_passes(KestrelPanel, bpy.types.Panel):
-    bl_label = "Passes"
+
+class ViewLayerPanel(KestrelPanel):
     bl_context = "view_layer"
     needs_library = False
+
+
+class KESTREL_VIEW_LAYER_PT_passes(ViewLayerPanel, bpy.types.Panel):
+    bl_label = "Passes"
+
+    def draw(self, context):
+        pass
+
+
+class PassesPanel(ViewLayerPanel):
+    """A panel of switches within Passes, laid out as Cycles' are."""
+    bl_parent_id = "KESTREL_VIEW_LAYER_PT_passes"
 
     def draw(self, context):
         layout = self.layout
-        layer = context.view_layer
         layout.use_property_split = True
         layout.use_property_decorate = False
-        column = layout.column(heading="Data", align=True)
-        column.prop(layer, "use_pass_z", text="Depth")
-        column.prop(layer, "use_pass_position")
-        column.prop(layer, "use_pass_normal")
-        column.prop(layer, "use_pass_emit", text="Emission")
+        self.draw_switches(layout, context.view_layer)
+
+
+class KESTREL_VIEW_LAYER_PT_passes_data(PassesPanel, bpy.types.Panel):
+    bl_label = "Data"
+
+    def draw_switches(self, layout, view_layer):
+        column = layout.column(heading="Include", align=True)
+        column.prop(view_layer, "use_pass_z")
+        column.prop(view_layer, "use_pass_mist")
+        column.prop(view_layer, "use_pass_position")
+        column.prop(view_layer, "use_pass_normal")
+        column.prop(view_layer, "use_pass_uv")
+        column = layout.column(heading="Indexes", align=True)
+        column.prop(view_layer, "use_pass_object_index")
+        column.prop(view_layer, "use_pass_material_index")
+        column = layout.column(heading="Denoising Data", align=True)
+        for name, text in zip(DENOISING, ("Normal", "Albedo")):
+            column.prop_enum(view_layer.kestrel, "passes", name, text=text)
+
+
+class KESTREL_VIEW_LAYER_PT_passes_light(PassesPanel, bpy.types.Panel):
+    bl_label = "Light"
+
+    def draw_switches(self, layout, view_layer):
+        layout.column(heading="Diffuse").prop(view_layer, "use_pass_diffuse_color", text="Color")
+        column = layout.column(heading="Other", align=True)
+        column.prop(view_layer, "use_pass_emit", text="Emission")
+        column.prop(view_layer, "use_pass_shadow")
+
+
+class KESTREL_VIEW_LAYER_PT_passes_cryptomatte(PassesPanel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+
+    def draw_switches(self, layout, view_layer):
+        kinds = ("object", "material", "asset")
+        column = layout.column(heading="Include", align=True)
+        for kind in kinds:
+            column.prop(view_layer, f"use_pass_cryptomatte_{kind}", text=kind.title())
+        column = layout.column()
+        column.active = any(getattr(view_layer, f"use_pass_cryptomatte_{kind}") for kind in kinds)
+        column.prop(view_layer, "pass_cryptomatte_depth", text="Levels")
+
+
+class KESTREL_VIEW_LAYER_PT_passes_kestrel(PassesPanel, bpy.types.Panel):
+    bl_label = "Kestrel"
+
+    def draw_switches(self, layout, view_layer):
         layout.use_property_split = False
-        layout.label(text="Kestrel")
-        layout.column(align=True).prop(layer.kestrel, "passes")
+        column = layout.column(align=True)
+        for item in passes.OPTIONAL:
+            if item.name not in DENOISING:
+                column.prop_enum(view_layer.kestrel, "passes", item.name)
 
 
-class KESTREL_VIEW_LAYER_PT_override(KestrelPanel, bpy.types.Panel):
+class KESTREL_VIEW_LAYER_PT_override(ViewLayerPanel, bpy.types.Panel):
     bl_label = "Override"
-    bl_context = "view_layer"
     bl_options = {"DEFAULT_CLOSED"}
-    needs_library = False
 
     def draw(self, context):
         layout = self.layout
@@ -42,5 +98,9 @@ class KESTREL_VIEW_LAYER_PT_override(KestrelPanel, bpy.types.Panel):
 
 CLASSES = (
     KESTREL_VIEW_LAYER_PT_passes,
+    KESTREL_VIEW_LAYER_PT_passes_data,
+    KESTREL_VIEW_LAYER_PT_passes_light,
+    KESTREL_VIEW_LAYER_PT_passes_cryptomatte,
+    KESTREL_VIEW_LAYER_PT_passes_kestrel,
     KESTREL_VIEW_LAYER_PT_override,
 )

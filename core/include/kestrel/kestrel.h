@@ -181,6 +181,7 @@ typedef struct KestrelMaterial {
   bool casts_shadow;
   int32_t alpha_mode; /* KestrelAlphaMode */
   float alpha_cutoff; /* 0…1, for KESTREL_ALPHA_MASK */
+  int32_t pass_index; /* for the pass MaterialIndex */
 } KestrelMaterial;
 
 /* Grey, matte, opaque: diffuse and ambient 0.8, no specular, index of refraction 1. */
@@ -233,6 +234,8 @@ typedef struct KestrelObject {
   const char* unit;     /* objects of one unit are selected together; NULL: its own name */
   uint32_t hidden_from; /* KestrelRays that do not meet the object; 0: all meet it */
   bool holdout;         /* where the camera sees it, the picture is black with an alpha of 0 */
+  int32_t pass_index;   /* for the pass ObjectIndex */
+  const char* asset;    /* what it is a part of, for Cryptomatte; NULL: its own name */
 } KestrelObject;
 
 /* An object whose mesh has no triangles, or whose matrix has no inverse (a scale of zero), is not
@@ -291,6 +294,9 @@ typedef struct KestrelWorld {
   float color[3];          /* radiance; factor on the textures */
   uint64_t textures[6];    /* every one that the kind reads must be given */
   float map_from_world[9]; /* column-major 3x3 rotation applied to directions before the lookup */
+  float mist_start;        /* metres: the pass Mist is 0 up to here, */
+  float mist_depth;        /* and 1 so many metres further on; 0: 0 on every surface */
+  float mist_falloff;      /* power of what lies between; 0 as 1: linear */
 } KestrelWorld;
 
 KESTREL_API KestrelError kestrelSetWorld(KestrelScene scene, const KestrelWorld* world);
@@ -317,8 +323,9 @@ KESTREL_API void kestrelReleaseRenderer(KestrelRenderer renderer);
 /* Called now and then from a rendering thread; `fraction` 0…1. Return false to cancel. */
 typedef bool (*KestrelProgressCallback)(void* user, float fraction, const char* status);
 
-/* Passes that the next frames keep: names separated by commas, or "all", as at first. Each takes
- * memory of the picture's size; those left out cannot be read. An unknown name is an error. */
+/* Passes that the next frames keep: names separated by commas, or "all", as at first: all but
+ * Cryptomatte beyond its third pass of a kind. Each takes memory of the picture's size; those left
+ * out cannot be read. A Cryptomatte pass keeps those before it too. An unknown name is an error. */
 KESTREL_API KestrelError kestrelSetPasses(KestrelRenderer renderer, const char* passes);
 
 /* Renders one frame of the committed scene, `width` x `height` pixels (1…65536). Blocks. While it
@@ -356,13 +363,22 @@ KESTREL_API KestrelError kestrelReadPass(KestrelRenderer renderer, const char* n
  * kestrelRender() on this renderer, or its release. NULL on failure. */
 KESTREL_API const float* kestrelGetPassPixels(KestrelRenderer renderer, const char* name);
 
+/* The number that Cryptomatte makes of a name: MurmurHash3 for 32 bits. 0 for NULL. */
+KESTREL_API uint32_t kestrelGetCryptomatteHash(const char* name);
+
+/* Cryptomatte of the last frame: the names that the passes of a `layer` ("CryptoObject",
+ * "CryptoMaterial", "CryptoAsset") tell apart, as a JSON object of the ids' eight hexadecimal
+ * digits by name. Valid until the next call on this thread. NULL where the frame kept none of its
+ * passes. */
+KESTREL_API const char* kestrelGetCryptomatteManifest(KestrelRenderer renderer, const char* layer);
+
 /* Times, rays and what was selected in the last frame, as the JSON of one entry of "frames".
  * Valid until the next call on this thread. NULL before the first frame. */
 KESTREL_API const char* kestrelGetStats(KestrelRenderer renderer);
 
 /* Writes passes ("Combined,Depth", or "all" that the frame kept) to `path`: .exr linear with one
- * layer a pass, .png the first of them in sRGB. The file appears whole or not at all. Needs the
- * image plug-in. */
+ * layer a pass, and Cryptomatte's metadata, .png the first of them in sRGB. The file appears whole
+ * or not at all. Needs the image plug-in. */
 KESTREL_API KestrelError kestrelWriteImage(KestrelRenderer renderer, const char* path,
                                            const char* passes);
 

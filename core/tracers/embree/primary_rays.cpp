@@ -28,6 +28,7 @@ void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& h
   out.object[i] = static_cast<uint32_t>(hit.object) + 1;
   out.material[i] =
       static_cast<uint32_t>(material_of(scene, scene.objects[hit.object], hit.triangle));
+  if (!out.uv.empty()) out.uv[i] = mesh_uv(*scene.meshes[scene.objects[hit.object].mesh], hit);
   const vec3 to_viewer = camera.to_viewer(s.position);
   face_viewer(s, to_viewer);
   out.lighting[i] = lighting_without_shadows(scene, s, to_viewer);
@@ -68,7 +69,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
 
 uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
   const Region& region = inputs.region;
-  out.resize(region.width, region.height);
+  out.resize(inputs);
   out.holdout.resize(inputs.scene.has_holdouts ? region.pixels() : 0);
   const CameraRays camera(inputs);
   for_tiles(region, [&](const Region& tile) {
