@@ -603,6 +603,30 @@ TEST_F(Api, PassesAreListedAndUnknownOnesErrors) {
   expect_invalid({"name"});
 }
 
+TEST_F(Api, CryptomatteSaysWhatItsIdsMean) {
+  set_glowing_square();
+  EXPECT_EQ(kestrelGetCryptomatteManifest(renderer, "CryptoObject"), nullptr);
+  expect_failure(KESTREL_ERROR_INVALID_OPERATION, KESTREL_ERROR_INVALID_OPERATION, {});
+  expect_ok(kestrelSetPasses(renderer, "CryptoObject01"));
+  expect_ok(kestrelRender(renderer, 1, 1, nullptr, nullptr));
+  EXPECT_NE(kestrelGetPassPixels(renderer, "CryptoObject00"), nullptr);  // comes along
+  const char* manifest = kestrelGetCryptomatteManifest(renderer, "CryptoObject");
+  ASSERT_NE(manifest, nullptr);
+  EXPECT_EQ(std::string(manifest).find("{\"object\":\""), 0u) << manifest;
+  EXPECT_EQ(kestrelGetCryptomatteManifest(renderer, "CryptoAsset"), nullptr);
+  expect_failure(KESTREL_ERROR_INVALID_OPERATION, KESTREL_ERROR_INVALID_OPERATION,
+                 {"CryptoAsset00", "kestrelSetPasses"});
+  for (const char* layer : {"CryptoObject00", "Beauty", static_cast<const char*>(nullptr)}) {
+    EXPECT_EQ(kestrelGetCryptomatteManifest(renderer, layer), nullptr);
+    expect_invalid();
+  }
+  EXPECT_EQ(kestrelGetCryptomatteManifest(nullptr, "CryptoObject"), nullptr);
+  expect_invalid();
+  EXPECT_EQ(kestrelGetCryptomatteHash("Hello, world!"), 0xc0363e43u);
+  EXPECT_EQ(kestrelGetCryptomatteHash(nullptr), 0u);
+  expect_invalid({"name"});
+}
+
 TEST_F(Api, OnlyWantedPassesAreKept) {
   set_glowing_square();
   expect_ok(kestrelSetPasses(renderer, "Combined,Depth"));

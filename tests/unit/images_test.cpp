@@ -248,6 +248,21 @@ TEST(WriteImage, ExrHoldsAllLayersAndNothingOfTheMachine) {
   EXPECT_EQ(text.find(":20"), std::string::npos);
 }
 
+TEST(WriteImage, CryptomatteKeepsAllBitsAndItsAttributes) {
+  const TemporaryFolder folder;
+  const std::vector<float> slots = {-1.2345678e-20f, 0.7f, 9.8765432e30f, 0.3f};
+  images::write_file(folder.file("a.exr"), 1, 1, {{"CryptoObject00", "rgba", slots.data()}},
+                     {{"cryptomatte/0123456/manifest", R"({"Wärme":"a0b1c2d3"})"}});
+  const Bytes file = test::load(folder.file("a.exr"));
+  const ExrHeader header = exr_header(file);
+  for (const char* letter : {"r", "g", "b", "a"}) {
+    EXPECT_EQ(header.channels.at(std::string("CryptoObject00.") + letter), 2) << letter;
+  }
+  const std::string text(file.begin(), file.end());
+  EXPECT_NE(text.find("cryptomatte/0123456/manifest"), std::string::npos);
+  EXPECT_NE(text.find(R"({"Wärme":"a0b1c2d3"})"), std::string::npos);
+}
+
 TEST(WriteImage, ExrKeepsValuesAndOrientation) {
   const TemporaryFolder folder;
   // Bottom row first; alpha associated. Values above 1 and below 0 are radiances like others.

@@ -179,6 +179,34 @@ TEST(Cryptomatte, PixelsListWhatCoversThem) {
   EXPECT_EQ(f.renderer->film().manifest(MatteKind::material), nullptr);
 }
 
+TEST(Passes, WhatShowsThroughAVeilCountsByItsShare) {
+  // From the camera at z = 10: a veil of alpha 0.75 at 2, a clear pane of 0.5 at 1, the floor at 0.
+  SceneMaker s;
+  Material veil, pane;
+  veil.diffuse.w = 0.75f;
+  veil.alpha_mode = AlphaMode::blend;
+  veil.optical.y = s.scene->settings.environment_ior;
+  pane.optical = {0.0f, s.scene->settings.environment_ior, 0.5f};
+  s.object("floor", quad_mesh({-1, -1, 0}, {2, 0, 0}, {0, 1, 0}), 0);
+  s.object("pane", quad_mesh({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}), s.material(pane));
+  s.object("veil", quad_mesh({-1, -1, 2}, {1, 0, 0}, {0, 2, 0}), s.material(veil));
+  s.scene->world.mist = {0.0f, 20.0f, 1.0f};
+  const Frame f(s, {"CryptoObject02", "Mist"});
+  const auto expect = [&](int x, int y, const std::map<std::string, float>& shares, float mist) {
+    const auto found = f.mattes("CryptoObject", x, y);
+    EXPECT_EQ(found.size(), shares.size()) << x << ", " << y;
+    for (const auto& [name, share] : shares) {
+      ASSERT_TRUE(found.contains(matte_id(name))) << name;
+      EXPECT_NEAR(found.at(matte_id(name)), share, 1e-5f) << name;
+    }
+    EXPECT_NEAR(f.at("Mist", x, y)[0], mist, 1e-5f) << x << ", " << y;
+  };
+  expect(3, 3, {{"veil", 0.75f}, {"pane", 0.125f}, {"floor", 0.125f}},
+         0.75f * 0.4f + 0.125f * 0.45f + 0.125f * 0.5f);
+  expect(3, 12, {{"veil", 0.75f}, {"pane", 0.125f}}, 0.75f * 0.4f + 0.125f * 0.45f + 0.125f);
+  expect(12, 3, {{"pane", 0.5f}, {"floor", 0.5f}}, 0.5f * 0.45f + 0.5f * 0.5f);
+}
+
 TEST(Cryptomatte, MoreThanItsSlotsIsLeftOut) {
   std::vector<float> plane(4, 0.0f);
   const MatteSlots slots({plane.data()});
