@@ -74,7 +74,9 @@ class FinalTest(ViewportTest):
         return pictures
 
 
-class ProgressiveTest(FinalTest):
+class TilesTest(FinalTest):
+    size = (1920, 1080)  # takes so long that something can be seen of it
+
     def test_tiles_show_as_they_get_done(self):
         """Every pixel is missing or final."""
         pictures = self.watch_display()
@@ -94,6 +96,8 @@ class ProgressiveTest(FinalTest):
             np.testing.assert_array_equal(picture[there], final[there])
             self.assertEqual(np.abs(picture[~there]).max(), 0.0)
 
+
+class ProgressiveTest(FinalTest):
     def test_samples_add_up_until_escape(self):
         self.scene.kestrel.samples = 4096
         pictures = self.watch_display()
