@@ -28,6 +28,7 @@ def prepare(scene):
         raise RuntimeError("the engine KESTREL is not registered; is the add-on enabled?")
     scene.render.resolution_x, scene.render.resolution_y = SIZE_PX
     scene.render.resolution_percentage = 100
+    scene.render.use_persistent_data = True  # the statistics are read after the render
     scene.kestrel.samples = SAMPLES
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"
@@ -62,8 +63,9 @@ def choose_all_passes(view_layer):
 
 def last_stats(scene, view_layer):
     """What the core says about the frame just rendered."""
-    from kestrel import engine, session
-    stats = session.acquire(engine.session_key(scene, view_layer)).renderer.stats()
+    from kestrel import final_render, session
+    key = final_render.session_key(scene, view_layer)
+    stats = session.acquire(key).renderer.stats()
     return json.loads(stats)
 
 
