@@ -25,7 +25,7 @@ STEP, MODULE, FOLDER, *REST = sys.argv[sys.argv.index("--") + 1:]
 FOLDER = Path(FOLDER)
 SMALL_PX = (160, 90)
 # May hold one value everywhere in the showcase.
-PLAIN = ("Emission", "Specular", "Ambient", "HeuristicMask", "UV")
+PLAIN = ("Emission", "Specular", "Ambient", "HeuristicMask", "UV", "Vector")
 
 
 def tell(text):

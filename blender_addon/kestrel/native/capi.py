@@ -458,8 +458,9 @@ class Scene:
         self.library.check(self.c.kestrelCommitScene(self.handle))
 
     def cancel_commit(self):
-        """Let a commit() on another thread raise Cancelled."""
-        self.c.kestrelCancelCommit(self.handle)
+        """Let a commit() on another thread raise Cancelled, if there is one."""
+        if self._handle is not None:
+            self.c.kestrelCancelCommit(self._handle)
 
 
 class Renderer:

@@ -41,13 +41,22 @@ class KESTREL_VIEW_LAYER_PT_passes_data(PassesPanel, bpy.types.Panel):
         column.prop(view_layer, "use_pass_mist")
         column.prop(view_layer, "use_pass_position")
         column.prop(view_layer, "use_pass_normal")
+        vector = column.column()
+        vector.active = not view_layer.id_data.render.use_motion_blur
+        vector.prop(view_layer, "use_pass_vector")
         column.prop(view_layer, "use_pass_uv")
         column = layout.column(heading="Indexes", align=True)
         column.prop(view_layer, "use_pass_object_index")
         column.prop(view_layer, "use_pass_material_index")
-        column = layout.column(heading="Denoising Data", align=True)
+        # Buttons of an enumeration would each repeat their name as a label of their own.
+        split = layout.split(factor=0.4)
+        label = split.row()
+        label.alignment = "RIGHT"
+        label.label(text="Denoising Data")
+        buttons = split.row(align=True)
+        buttons.use_property_split = False
         for name, text in zip(DENOISING, ("Normal", "Albedo")):
-            column.prop_enum(view_layer.kestrel, "passes", name, text=text)
+            buttons.prop_enum(view_layer.kestrel, "passes", name, text=text)
 
 
 class KESTREL_VIEW_LAYER_PT_passes_light(PassesPanel, bpy.types.Panel):
