@@ -9,6 +9,7 @@ import hashlib
 import threading
 
 from .native import capi, loader
+from .object_table import ObjectTable
 
 _sessions = {}
 _lock = threading.Lock()
@@ -49,7 +50,8 @@ class Session:
         self.scene = capi.Scene(library)
         self.renderer = capi.Renderer(self.scene)
         self.unseen_material = ""   # the camera does not meet objects of this material
-        self.sent = {}              # (kind, id): what was sent last
+        self.sent = {}              # (kind, id): what was sent last, but for objects
+        self.objects = ObjectTable()  # that were sent
         self.sent_settings = set()  # units that were given settings
         self.warned = set()         # texts that were already said
         self.means = {}             # (kind of mean, texture, its content): mean colour
@@ -90,9 +92,8 @@ class Export:
     Items that are unchanged are not sent again; items that were not met are removed at the end.
     """
 
-    # What refers to others goes before what it refers to.
-    REMOVAL_ORDER = (capi.KIND_OBJECT, capi.KIND_LIGHT, capi.KIND_MATERIAL, capi.KIND_TEXTURE,
-                     capi.KIND_MESH)
+    # What refers to others goes before what it refers to; objects went before all.
+    REMOVAL_ORDER = (capi.KIND_LIGHT, capi.KIND_MATERIAL, capi.KIND_TEXTURE, capi.KIND_MESH)
 
     def __init__(self, session, say, environment_ior=1.0, touched=None, check=None):
         """`say(text)` takes warnings; each text is said once per session. `touched`: keys of the
@@ -155,27 +156,24 @@ class Export:
     def remember_mesh(self, key, ident, slot_count):
         self._shapes.setdefault(key, []).append((ident, slot_count))
 
-    def put_object(self, ident, description, matrix):
-        """`description`: set_object()'s, without the matrix. Only the matrix is sent if it alone
-        changed."""
-        key = (capi.KIND_OBJECT, ident)
-        before = self.session.sent.get(key)
-        if before == (description, matrix):
-            return
-        if before is not None and before[0] == description:
-            self.scene.set_object_transform(ident, matrix)
-        else:
-            self.scene.set_object(ident, *description, matrix)
-        self.session.sent[key] = (description, matrix)
-        self.session.edits += 1
+    def put_objects(self, table):
+        """All objects, as a fresh ObjectTable."""
+        self.session.edits += table.send(self.scene, self.session.objects)
+        self.session.objects = table
+
+    def move_objects(self, keys, matrices):
+        """As ObjectTable.move()."""
+        self.session.edits += self.session.objects.move(self.scene, keys, matrices)
 
     def finish(self):
         """Remove what is gone. What was sent is seen after the scene's commit."""
         gone = set(self.session.sent) - self._met
         for kind in self.REMOVAL_ORDER:
-            for item in sorted(item for item in gone if item[0] == kind):
-                self.scene.remove(*item)
-                del self.session.sent[item]
+            idents = sorted(ident for its_kind, ident in gone if its_kind == kind)
+            if idents:
+                self.scene.remove(kind, idents)
+            for ident in idents:
+                del self.session.sent[kind, ident]
         self.session.edits += len(gone)
         self.session.shapes = self._shapes
 

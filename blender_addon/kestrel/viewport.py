@@ -66,11 +66,13 @@ class Viewport:
 
     def update(self, depsgraph, space):
         """Send what changed in Blender's data."""
-        self._shown_objects = shown_objects(space)
+        shown = shown_objects(space)
+        other_objects = shown != self._shown_objects
+        self._shown_objects = shown
         before = self._session.edits
         with self._thread.editing:
-            sync.export_viewport(self._session, depsgraph, space, log.warning,
-                                 None if self._read_all else sync.touched_geometry(depsgraph))
+            sync.export_viewport(self._session, depsgraph, space, log.warning, self._read_all,
+                                 other_objects)
         self._read_all = False
         if self._session.edits != before:
             self._thread.scene_changed()

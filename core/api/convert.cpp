@@ -40,12 +40,6 @@ void check_count(size_t count, const std::string& name, const char* what) {
 }
 
 template <typename T>
-std::span<const T> array(const T* values, size_t count, const char* argument) {
-  if (count == 0) return {};
-  return {require(values, argument), count};
-}
-
-template <typename T>
 std::span<const T> optional_array(const T* values, size_t count) {
   return values ? std::span<const T>(values, count) : std::span<const T>();
 }

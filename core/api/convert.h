@@ -3,12 +3,21 @@
 // All throw Error(invalid_argument).
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "api/errors.h"
 #include "kestrel/kestrel.h"
 #include "scene/scene_builder.h"
 
 namespace kestrel::api {
+
+/// The caller's array; `argument` names it in the error for NULL.
+template <typename T>
+std::span<const T> array(const T* values, size_t count, const char* argument) {
+  if (count == 0) return {};
+  return {require(values, argument), count};
+}
 
 /// Empty for NULL; bytes that are not UTF-8 become '?', since names end up in JSON.
 std::string text_from(const char* text);

@@ -142,10 +142,35 @@ KestrelError kestrelSetObject(KestrelScene scene, uint64_t id, const KestrelObje
   });
 }
 
+KestrelError kestrelSetObjects(KestrelScene scene, const uint64_t* ids,
+                               const float* world_from_object, size_t count,
+                               const KestrelObject* object) {
+  return edit_scene(scene, [&](SceneBuilder& builder) {
+    const auto all = array(ids, count, "ids");
+    const auto matrices = array(world_from_object, 12 * count, "world_from_object");
+    ObjectInput input = object_from(*require(object, "object"));
+    for (size_t i = 0; i < count; ++i) {
+      input.world_from_object = matrix_from(&matrices[12 * i]);
+      builder.set_object(all[i], input);
+    }
+  });
+}
+
 KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
                                        const float world_from_object[12]) {
   return edit_scene(scene, [&](SceneBuilder& builder) {
     builder.set_object_transform(id, matrix_from(require(world_from_object, "world_from_object")));
+  });
+}
+
+KestrelError kestrelSetObjectTransforms(KestrelScene scene, const uint64_t* ids,
+                                        const float* world_from_object, size_t count) {
+  return edit_scene(scene, [&](SceneBuilder& builder) {
+    const auto all = array(ids, count, "ids");
+    const auto matrices = array(world_from_object, 12 * count, "world_from_object");
+    for (size_t i = 0; i < count; ++i) {
+      builder.set_object_transform(all[i], matrix_from(&matrices[12 * i]));
+    }
   });
 }
 
@@ -165,6 +190,14 @@ KestrelError kestrelSetObjectSetting(KestrelScene scene, uint64_t id, const char
 
 KestrelError kestrelRemove(KestrelScene scene, KestrelKind kind, uint64_t id) {
   return edit_scene(scene, [&](SceneBuilder& builder) { builder.remove(kind_from(kind), id); });
+}
+
+KestrelError kestrelRemoveItems(KestrelScene scene, KestrelKind kind, const uint64_t* ids,
+                                size_t count) {
+  return edit_scene(scene, [&](SceneBuilder& builder) {
+    const ItemKind items = kind_from(kind);
+    for (const uint64_t id : array(ids, count, "ids")) builder.remove(items, id);
+  });
 }
 
 KestrelError kestrelSetCamera(KestrelScene scene, const KestrelCamera* camera) {

@@ -53,7 +53,7 @@ class AnimationTest(SceneTest):
         self.assertGreater(np.abs(self.frame(10) - self.frame(11)).max(), 0.1)  # another camera
 
     def test_only_what_moves_is_sent(self):
-        names = ("set_mesh", "set_material", "set_object", "set_object_transform")
+        names = ("set_mesh", "set_material", "set_objects", "set_object_transforms")
         calls = {}
         for name in names:
             patch = mock.patch.object(capi.Scene, name, autospec=True,
@@ -62,8 +62,8 @@ class AnimationTest(SceneTest):
             self.addCleanup(patch.stop)
         bpy.ops.render.render(animation=True)
         self.assertEqual({name: call.call_count for name, call in calls.items()},
-                         {"set_mesh": 2, "set_material": 2, "set_object": 2,
-                          "set_object_transform": 19})
+                         {"set_mesh": 2, "set_material": 2, "set_objects": 2,
+                          "set_object_transforms": 19})
         self.assertEqual(session.count(), 0)
 
     def test_frame_step(self):

@@ -314,7 +314,7 @@ class AgainTest(SceneTest):
         self.render()
         core = next(iter(session._sessions.values()))
         calls = []
-        for name in ("set_mesh", "set_object", "set_material", "set_light"):
+        for name in ("set_mesh", "set_objects", "set_material", "set_light"):
             original = getattr(core.scene, name)
             setattr(core.scene, name, lambda *a, n=name, f=original: (calls.append(n), f(*a)))
         self.render()

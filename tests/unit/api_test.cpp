@@ -248,6 +248,10 @@ TEST_F(Api, NullHandlesAreErrors) {
   const KestrelObject object = object_of(1);
   expect_invalid(kestrelSetObject(nullptr, 1, &object));
   expect_invalid(kestrelSetObjectTransform(nullptr, 1, kIdentity));
+  const uint64_t ids[] = {1};
+  expect_invalid(kestrelSetObjects(nullptr, ids, kIdentity, 1, &object));
+  expect_invalid(kestrelSetObjectTransforms(nullptr, ids, kIdentity, 1));
+  expect_invalid(kestrelRemoveItems(nullptr, KESTREL_KIND_OBJECT, ids, 1));
   expect_invalid(kestrelSetObjectSetting(nullptr, 1, "relevance", "1"));
   expect_invalid(kestrelRemove(nullptr, KESTREL_KIND_MESH, 1));
   const KestrelCamera camera = camera_above();
@@ -402,6 +406,49 @@ TEST_F(Api, UnknownIdsAreErrors) {
   const KestrelObject object = object_of(8);
   expect_ok(kestrelSetObject(scene, 2, &object));
   expect_invalid(kestrelCommitScene(scene), {"object", "mesh 8"});
+}
+
+TEST_F(Api, ManyObjectsAreSetMovedAndRemovedAtOnce) {
+  set_glowing_square();
+  const KestrelObject object = object_of(1);
+  const uint64_t ids[] = {2, 3};
+  float places[24];
+  for (int i = 0; i < 2; ++i) std::memcpy(places + 12 * i, kIdentity, sizeof(kIdentity));
+  const auto blue = [&](float x) {
+    KestrelCamera camera = camera_above();
+    camera.world_from_camera[9] = x;
+    expect_ok(kestrelSetCamera(scene, &camera));
+    expect_ok(kestrelCommitScene(scene));
+    expect_ok(kestrelRender(renderer, 1, 1, nullptr, nullptr));
+    float pixel[4];
+    expect_ok(kestrelReadPass(renderer, "Combined", pixel, 4));
+    return pixel[2];
+  };
+  places[9] = 10.0f;
+  places[21] = 20.0f;
+  KestrelMaterial material;
+  kestrelDefaultMaterial(&material);
+  material.emission[2] = 2.0f;
+  expect_ok(kestrelSetMaterial(scene, 7, &material));
+  const uint64_t glowing = 7;
+  const KestrelObject glowing_object = object_of(1, &glowing);
+  expect_ok(kestrelSetObjects(scene, ids, places, 2, &glowing_object));
+  EXPECT_GT(blue(10.0f), 1.9f);
+  EXPECT_GT(blue(20.0f), 1.9f);
+  EXPECT_LT(blue(30.0f), 0.1f);
+  places[21] = 30.0f;
+  expect_ok(kestrelSetObjectTransforms(scene, ids, places, 2));
+  EXPECT_GT(blue(10.0f), 1.9f);
+  EXPECT_LT(blue(20.0f), 0.1f);
+  EXPECT_GT(blue(30.0f), 1.9f);
+  expect_ok(kestrelRemoveItems(scene, KESTREL_KIND_OBJECT, ids, 2));
+  EXPECT_LT(blue(10.0f), 0.1f);
+  expect_ok(kestrelSetObjects(scene, nullptr, nullptr, 0, &object));
+  expect_invalid(kestrelSetObjects(scene, nullptr, places, 2, &object), {"ids"});
+  expect_invalid(kestrelSetObjects(scene, ids, nullptr, 2, &object), {"world_from_object"});
+  expect_invalid(kestrelSetObjects(scene, ids, places, 2, nullptr), {"object"});
+  expect_invalid(kestrelSetObjectTransforms(scene, ids, places, 2), {"2"});
+  expect_invalid(kestrelRemoveItems(scene, KESTREL_KIND_OBJECT, ids, 2), {"object", "2"});
 }
 
 TEST_F(Api, AttributesOfAMeshAreChecked) {

@@ -203,9 +203,12 @@ FUNCTIONS = {
     "kestrelSetLight": (c_int, [c_void_p, c_uint64, POINTER(Light)]),
     "kestrelSetObject": (c_int, [c_void_p, c_uint64, POINTER(Object)]),
     "kestrelSetObjectTransform": (c_int, [c_void_p, c_uint64, float_p]),
+    "kestrelSetObjects": (c_int, [c_void_p, uint64_p, float_p, c_size_t, POINTER(Object)]),
+    "kestrelSetObjectTransforms": (c_int, [c_void_p, uint64_p, float_p, c_size_t]),
     "kestrelSetObjectMotion": (c_int, [c_void_p, c_uint64, float_p, c_size_t]),
     "kestrelSetObjectSetting": (c_int, [c_void_p, c_uint64, c_char_p, c_char_p]),
     "kestrelRemove": (c_int, [c_void_p, c_int, c_uint64]),
+    "kestrelRemoveItems": (c_int, [c_void_p, c_int, uint64_p, c_size_t]),
     "kestrelSetCamera": (c_int, [c_void_p, POINTER(Camera)]),
     "kestrelSetCameraMotion": (c_int, [c_void_p, POINTER(Camera), c_size_t]),
     "kestrelSetWorld": (c_int, [c_void_p, POINTER(World)]),
@@ -407,32 +410,40 @@ class Scene:
     def set_light(self, ident, light):
         self.library.check(self.c.kestrelSetLight(self.handle, ident, byref(light)))
 
-    def set_object(self, ident, name, unit, mesh, materials, visibility, pass_index, asset,
-                   world_from_object):
-        """`materials` are ids by slot, `visibility` the RAYS_… that do not meet it and whether it is
-        a holdout, `world_from_object` 12 floats, column by column."""
+    def set_objects(self, idents, world_from_object, name, unit, mesh, materials, visibility,
+                    pass_index, asset):
+        """Objects that differ in id and place alone: uint64 (N,), and float32 (N, 12), column by
+        column. `materials` are ids by slot, `visibility` the RAYS_… that do not meet them and
+        whether they are holdouts."""
         slots = (c_uint64 * len(materials))(*materials)
-        item = Object(encode(name), mesh, slots, len(materials),
-                      (c_float * 12)(*world_from_object), encode(unit), *visibility, pass_index,
-                      encode(asset))
-        self.library.check(self.c.kestrelSetObject(self.handle, ident, byref(item)))
+        item = Object(encode(name), mesh, slots, len(materials), (c_float * 12)(), encode(unit),
+                      *visibility, pass_index, encode(asset))
+        self.library.check(self.c.kestrelSetObjects(
+            self.handle, pointer(idents, uint64_p, np.uint64),
+            pointer(world_from_object, float_p, np.float32), len(idents), byref(item)))
 
-    def set_object_transform(self, ident, world_from_object):
-        self.library.check(self.c.kestrelSetObjectTransform(
-            self.handle, ident, (c_float * 12)(*world_from_object)))
+    def set_object_transforms(self, idents, world_from_object):
+        """uint64 (N,), and float32 (N, 12), column by column."""
+        self.library.check(self.c.kestrelSetObjectTransforms(
+            self.handle, pointer(idents, uint64_p, np.uint64),
+            pointer(world_from_object, float_p, np.float32), len(idents)))
 
-    def set_object_motion(self, ident, matrices):
-        """As set_object_transform() at even steps of time; none: it stands still."""
-        values = (c_float * (12 * len(matrices)))(*(v for matrix in matrices for v in matrix))
+    def set_object_motion(self, ident, world_from_object):
+        """float32 (S, 12), as in set_object_transforms(), at even steps of time; none: it stands
+        still."""
         self.library.check(self.c.kestrelSetObjectMotion(
-            self.handle, ident, values, len(matrices)))
+            self.handle, ident, pointer(world_from_object, float_p, np.float32),
+            len(world_from_object)))
 
     def set_object_setting(self, ident, name, value):
         self.library.check(self.c.kestrelSetObjectSetting(
             self.handle, ident, encode(name), encode(value)))
 
-    def remove(self, kind, ident):
-        self.library.check(self.c.kestrelRemove(self.handle, kind, ident))
+    def remove(self, kind, idents):
+        """Remove items of a kind, ids in any sequence."""
+        idents = np.asarray(idents, np.uint64)
+        self.library.check(self.c.kestrelRemoveItems(
+            self.handle, kind, pointer(idents, uint64_p, np.uint64), len(idents)))
 
     def set_camera(self, camera):
         self.library.check(self.c.kestrelSetCamera(self.handle, byref(camera)))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From an evaluated depsgraph to the core's scene."""
 
-from .. import compat
 from ..session import Export
 from .camera import sync_camera
+from .changes import moved_objects, sync_moved, touched_geometry
 from .object import sync_objects
 from .settings import sync_settings
 from .world import sync_world
@@ -33,21 +33,22 @@ def export_depsgraph(session, depsgraph, camera, say, settings=None, check=None,
     return picture
 
 
-def export_viewport(session, depsgraph, space, say, touched=None):
-    """Send everything that a 3D view (`space`) shows, but for the camera and without a commit.
+def export_viewport(session, depsgraph, space, say, everything=True, other_objects=True):
+    """Send what a 3D view (`space`) shows, but for the camera and without a commit.
 
-    `touched`: what touched_geometry() says, None to read every mesh. Raises KestrelError; the
-    session is then unfit for use.
+    `everything`: whether more may have changed since the last time than the depsgraph says;
+    `other_objects`: whether the view may show others. Raises KestrelError; the session is then
+    unfit for use.
     """
     scene = depsgraph.scene_eval
+    touched = None if everything else touched_geometry(depsgraph)
     export = Export(session, say, scene.kestrel.environment_ior, touched)
+    if not (everything or other_objects):
+        moved = moved_objects(depsgraph, session.objects.entangled)
+        if moved is not None:
+            sync_moved(export, moved)
+            return
     ambient = sync_world(export, scene.world)
     sync_settings(export, scene, depsgraph.view_layer_eval, ambient, VIEWPORT_SETTINGS)
     sync_objects(export, depsgraph, lambda obj: obj.visible_in_viewport_get(space))
     export.finish()
-
-
-def touched_geometry(depsgraph):
-    """Keys of the objects and their data whose geometry this evaluation changed."""
-    return {compat.datablock_key(update.id.original) for update in depsgraph.updates
-            if update.is_updated_geometry}

@@ -3,14 +3,17 @@
 after, for the pass Vector.
 
 Blender's scene is evaluated at the first, the middle and the last moment. The middle one is what
-the export sends; what differs at the others gets a motion. Costs two further evaluations and
-exports a frame.
+the export sends; what differs at the others gets a motion. Costs three further evaluations and
+looks a frame.
 """
+
+import functools
 
 import numpy as np
 
 from .. import compat
 from ..native import capi
+from ..object_table import ObjectTable
 from ..session import Export
 from . import export_depsgraph
 from .camera import camera_item
@@ -49,7 +52,7 @@ class _Moment(Export):
         scene = depsgraph.scene_eval
         super().__init__(session, lambda _text: None, scene.kestrel.environment_ior)
         self.scene = _Catcher()
-        self.matrices = {}  # object id: 12 floats
+        self.objects = ObjectTable()
         self._wanted = wanted
         sync_objects(self, depsgraph)
         self.camera, _ = camera_item(self, camera, scene.render)
@@ -65,8 +68,8 @@ class _Moment(Export):
                 ident in self._wanted or self.session.sent.get((kind, ident)) != content):
             send()
 
-    def put_object(self, ident, _description, matrix):
-        self.matrices[ident] = matrix
+    def put_objects(self, table):
+        self.objects = table
 
 
 def shutter(scene):
@@ -122,16 +125,21 @@ def export_frame(engine, session, depsgraph, camera_of, say, check=None, commit=
 
 
 def _send_objects(session, moments):
-    moving = set()
-    for ident, matrix in (moments[1].matrices.items() if moments else ()):
-        states = [moment.matrices.get(ident) for moment in moments]
-        if None not in states and any(state != matrix for state in states):
-            moving.add(ident)
-            session.scene.set_object_motion(ident, states)
-    for ident in session.moving - moving:
-        if (capi.KIND_OBJECT, ident) in session.sent:
-            session.scene.set_object_motion(ident, [])
-    session.moving = moving
+    moving = {}
+    if moments:
+        tables = [moment.objects for moment in moments]
+        there = functools.reduce(np.intersect1d, [table.ids for table in tables])
+        order = [np.argsort(table.ids) for table in tables]
+        states = np.stack([table.places[rows[np.searchsorted(table.ids, there, sorter=rows)]]
+                           for table, rows in zip(tables, order)], axis=1)  # (N, 3, 12)
+        moves = (states != states[:, 1:2]).any(axis=(1, 2))
+        moving = dict(zip(there[moves].tolist(), states[moves]))
+    for ident, matrices in moving.items():
+        session.scene.set_object_motion(ident, matrices)
+    still = session.moving.difference(moving)
+    for ident in still.intersection(session.objects.ids.tolist()) if still else ():
+        session.scene.set_object_motion(ident, np.empty((0, 12), np.float32))
+    session.moving = set(moving)
 
 
 def _send_meshes(session, moments, deforming):

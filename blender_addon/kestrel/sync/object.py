@@ -5,10 +5,15 @@ Instances share their mesh. What one instancer places is one unit of the heurist
 instancer's name and settings.
 """
 
-import struct
+from dataclasses import dataclass
+
+import numpy as np
+from mathutils import Matrix
 
 from .. import compat
 from ..native import capi
+from ..object_table import ObjectTable, distinct, instance_ids
+from ..session import stable_id
 from .hair import sync_curves, sync_strands
 from .light import sync_light
 from .material import sync_material
@@ -27,6 +32,17 @@ def columns(matrix):
     return (*x[:3], *y[:3], *z[:3], *place[:3])
 
 
+def object_key(original):
+    """Bytes that name an object for as long as the file is open."""
+    return compat.datablock_key(original).encode("utf-8", "replace")
+
+
+def ranges(starts, counts):
+    """The numbers from each start on, as many as it counts, one after the other: int64."""
+    ends = np.cumsum(counts)
+    return np.arange(counts.sum()) + np.repeat(starts - ends + counts, counts)
+
+
 def identity_of(obj):
     """(name, pass index, asset's name): what compositing tells an object and its hair by. The names
     are Cryptomatte's, without the library; the asset is the topmost parent, or the object."""
@@ -36,71 +52,167 @@ def identity_of(obj):
     return obj.name, obj.pass_index, top.name
 
 
+def from_columns(place):
+    """The matrix of columns()."""
+    return Matrix(np.vstack([place.reshape(4, 3).T, (0.0, 0.0, 0.0, 1.0)]))
+
+
+@dataclass
+class Instances:
+    """What each item of a depsgraph says by itself, in its order."""
+    is_instance: np.ndarray   # bool (N,)
+    show_self: np.ndarray     # bool (N,)
+    show_strands: np.ndarray  # bool (N,)
+    places: np.ndarray        # float32 (N, 12), as columns()
+    paths: np.ndarray         # int32 (N, 8), persistent ids; of no meaning where it is no instance
+
+
+def read_instances(depsgraph):
+    # As arrays, and not because that is faster alone: an item that is looked at by itself may be
+    # freed already when it is the last of its instancer.
+    items = depsgraph.object_instances
+    count = len(items)
+
+    def read(name, dtype, width=1):
+        values = np.empty(count * width, dtype)
+        items.foreach_get(name, values)
+        return values
+
+    matrices = read("matrix_world", np.float32, 16).reshape(-1, 4, 4)
+    # Blender hands matrices out column by column.
+    return Instances(read("is_instance", bool), read("show_self", bool),
+                     read("show_particles", bool),
+                     np.ascontiguousarray(matrices[:, :, :3]).reshape(-1, 12),
+                     read("persistent_id", np.int32, 8).reshape(-1, 8))
+
+
+@dataclass
+class Kind:
+    """What items of a depsgraph have in common that show the same data of an object for the same
+    owner: the instancer, or the object itself."""
+    key: bytes           # of the object, and of its owner where that is another
+    parts: tuple = ()    # ((key, description), ...): what the core gets for each of them
+    light: object = None  # evaluated light instead
+
+
 class Objects:
     """Sends the objects of one evaluation."""
 
     def __init__(self, export, depsgraph, shown=None):
         """`shown(object)` says whether an object, or what it places, is drawn; None: all are."""
         self.export = export
+        self.depsgraph = depsgraph
         self.scene = depsgraph.scene_eval
         self.for_viewport = depsgraph.mode == "VIEWPORT"
         self.view_layer = depsgraph.view_layer_eval
         self.override = self.view_layer.material_override
         self.shown = shown
         self.settings = rows("object")
-        self.units = set()  # whose settings are set
         self.keys = {}      # original object: its key
-        self.shapes = {}    # (object key, address of its data): what shape() says
+        self.shapes = {}    # (object key, its data, with strands): what shape() says
         self.visibility = {}  # (original, original owner): what visibility() says
+        self.owners = {}    # unit: evaluated owner
+        self.entangled = set()  # as ObjectTable has it
 
     def key_of(self, original):
         key = self.keys.get(original)
         if key is None:
-            key = self.keys[original] = compat.datablock_key(original).encode("utf-8", "replace")
+            key = self.keys[original] = object_key(original)
         return key
 
-    def add(self, instance):
-        # First of all what comes from the instance itself: when the first item of the iteration is
-        # an instance, Blender has freed its memory by now, and what follows allocates.
-        matrix = instance.matrix_world.copy()
-        path = struct.pack("8i", *instance.persistent_id) if instance.is_instance else b""
-        show_self, show_strands = instance.show_self, instance.show_particles
-        obj = instance.object
-        if not show_self and not (show_strands and obj.particle_systems):
-            return
+    def send(self):
+        instances = read_instances(self.depsgraph)
+        kinds, numbers = self.kinds(instances)
+        counts = np.bincount(numbers, minlength=len(kinds))
+        # The items of kind k are order[starts[k]:starts[k] + counts[k]].
+        order, starts = np.argsort(numbers, kind="stable"), np.cumsum(counts) - counts
+        owners = np.array([number for number, kind in enumerate(kinds) for _ in kind.parts], int)
+        parts = [part for kind in kinds for part in kind.parts]
+        items = order[ranges(starts[owners], counts[owners])]
+        table = ObjectTable(places=instances.places[items], entangled=self.entangled)
+        table.numbers = np.repeat(np.arange(len(parts)), counts[owners])
+        table.descriptions = {number: part[1] for number, part in enumerate(parts)}
+        for kind, start, count in zip(kinds, starts, counts):
+            if kind.light is not None:
+                self.send_lights(kind, instances, order[start:start + count])
+                table.rows[kind.key] = []
+        seeds = np.array([stable_id(key) for key, _ in parts], np.uint64)[table.numbers]
+        is_instance = instances.is_instance[items]
+        table.ids = distinct(np.where(
+            is_instance, instance_ids(seeds, instances.paths[items]), seeds))
+        for row in np.flatnonzero(~is_instance).tolist():
+            key = kinds[owners[table.numbers[row]]].key  # which is one object's
+            table.rows.setdefault(key, []).append(row)
+        self.export.put_objects(table)
+        self.send_unit_settings(table)
+
+    def send_lights(self, kind, instances, items):
+        for item in items:
+            path = instances.paths[item].tobytes() if instances.is_instance[item] else b""
+            sync_light(self.export, kind.key + path, kind.light,
+                       from_columns(instances.places[item]))
+
+    def send_unit_settings(self, table):
+        _, first = np.unique(table.numbers, return_index=True)
+        idents = table.ids[first].tolist()
+        done = set()
+        for ident, (_, unit, *_) in zip(idents, table.descriptions.values()):
+            if unit not in done:
+                done.add(unit)
+                self.unit_settings(ident, unit, self.owners[unit])
+
+    def kinds(self, instances):
+        """The Kinds of all items, and of each item the number of its kind, int64 (N,)."""
+        kinds, numbers, found = [], [], {}
+        flags = zip(*(values.tolist() for values in (
+            instances.is_instance, instances.show_self, instances.show_strands)))
+        for item, flag in zip(self.depsgraph.object_instances, flags):
+            obj = item.object
+            owner = item.parent if flag[0] else None
+            key = obj.original, owner and owner.original, obj.data, flag
+            number = found.get(key)
+            if number is None:
+                self.export.check()
+                number = found[key] = len(kinds)
+                kinds.append(self.kind(obj, owner or obj, *flag))
+            numbers.append(number)
+        return kinds, np.array(numbers, np.int64)
+
+    def kind(self, obj, owner, is_instance, show_self, show_strands):
         original = obj.original
-        key, owner = self.key_of(original), obj
-        if path:
-            owner = instance.parent
-            key = b"%b/%b/%b" % (self.key_of(owner.original), key, path)
+        own_key = key = self.key_of(original)
+        if is_instance:
+            owner_key = self.key_of(owner.original)
+            self.entangled.update((key, owner_key))
+            key = b"%b/%b/" % (owner_key, key)
             if owner.original == original:  # a part of its geometry: the strands are not its own
                 show_strands = False
+        if obj.particle_systems or obj.type == "META":
+            self.entangled.add(own_key)
+        kind = Kind(key)
+        if not show_self and not (show_strands and obj.particle_systems):
+            return kind
         if self.shown and not self.shown(owner):
-            return
+            return kind
         if obj.type == "LIGHT":
-            sync_light(self.export, key, obj.data, matrix)
+            kind.light = obj.data
         elif obj.type in GEOMETRY or obj.type == "CURVES":
-            for part, *shape in self.shape(obj, original, show_strands):
-                if part or show_self:
-                    self.add_geometry(owner, key + part, *shape, self.visibility_of(obj, owner),
-                                      columns(matrix))
+            self.owners.setdefault(owner.name_full, owner)
+            visible = self.visibility_of(obj, owner)
+            kind.parts = tuple(
+                (key + part, (identity[0], owner.name_full, mesh, materials, visible,
+                              *identity[1:]))
+                for part, mesh, materials, identity in self.shape(obj, original, show_strands)
+                if part or show_self)
         elif obj.type in UNSUPPORTED:
             self.export.warn(f"Object '{obj.name}': {UNSUPPORTED[obj.type]} are not supported; it "
                              "is left out.")
-
-    def add_geometry(self, owner, key, mesh, materials, identity, visible, matrix):
-        unit = owner.name_full
-        ident = self.export.new_id(capi.KIND_OBJECT, key)
-        name, *rest = identity
-        self.export.put_object(ident, (name, unit, mesh, materials, visible, *rest), matrix)
-        if unit not in self.units:
-            self.units.add(unit)
-            self.unit_settings(ident, unit, owner)
+        return kind
 
     def shape(self, obj, original, with_strands):
         """((part, mesh id, material ids by slot, identity), ...) of an evaluated object: itself,
         whose part is empty, and the strands of its particle systems."""
-        key = (self.key_of(original), obj.data.as_pointer(), with_strands)
+        key = (self.key_of(original), obj.data, with_strands)
         found = self.shapes.get(key)
         if found is None:
             slots, wanted = self.slots(obj)  # first: the library decodes their images meanwhile
@@ -154,6 +266,4 @@ def default_value(row):
 
 
 def sync_objects(export, depsgraph, shown=None):
-    objects = Objects(export, depsgraph, shown)
-    for instance in depsgraph.object_instances:
-        objects.add(instance)
+    Objects(export, depsgraph, shown).send()

@@ -265,9 +265,19 @@ typedef struct KestrelObject {
 KESTREL_API KestrelError kestrelSetObject(KestrelScene scene, uint64_t id,
                                           const KestrelObject* object);
 
+/* kestrelSetObject() of `count` objects that differ in their ids and places alone: 12 floats each,
+ * which stand in for the object's own. An error leaves those before it set. */
+KESTREL_API KestrelError kestrelSetObjects(KestrelScene scene, const uint64_t* ids,
+                                           const float* world_from_object, size_t count,
+                                           const KestrelObject* object);
+
 /* Moves an object without sending it again. */
 KESTREL_API KestrelError kestrelSetObjectTransform(KestrelScene scene, uint64_t id,
                                                    const float world_from_object[12]);
+
+/* The same of `count` objects, 12 floats each. An error leaves those before it moved. */
+KESTREL_API KestrelError kestrelSetObjectTransforms(KestrelScene scene, const uint64_t* ids,
+                                                    const float* world_from_object, size_t count);
 
 /* How an object moves: its matrices, 12 floats each, at `count` even steps of time (2…129; 0: it
  * stands still, as at first). With the setting `motion_blur` the steps begin where the shutter
@@ -294,6 +304,10 @@ typedef enum KestrelKind {
 /* Removes one item; an unknown id is an error. What still refers to it fails the next
  * commit. */
 KESTREL_API KestrelError kestrelRemove(KestrelScene scene, KestrelKind kind, uint64_t id);
+
+/* The same of `count` items of a kind. An error leaves those before it removed. */
+KESTREL_API KestrelError kestrelRemoveItems(KestrelScene scene, KestrelKind kind,
+                                            const uint64_t* ids, size_t count);
 
 typedef enum KestrelProjection {
   KESTREL_PERSPECTIVE = 0,
