@@ -11,7 +11,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import final_render, log, passes, session, viewport
+from . import final_render, log, passes, session, viewport, write_lock
 from .native import capi
 
 
@@ -64,11 +64,14 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
             self._open_viewport().update(depsgraph, context.space_data)
 
     def view_draw(self, context, depsgraph):
+        write_lock.lifted(context.window_manager, lambda: self._draw(context, depsgraph))
+
+    # ---- 3D views ----
+
+    def _draw(self, context, depsgraph):
         with self._keeping_errors():
             self._open_viewport().draw(self, context, depsgraph)
         self._write(self._error or self._viewport.error or self._viewport.status)
-
-    # ---- 3D views ----
 
     def _open_viewport(self):
         if self._viewport is None or not self._viewport.is_open:
@@ -112,6 +115,7 @@ HANDLERS = {**final_render.HANDLERS, "load_pre": _forget_sessions, "undo_post": 
 
 
 def register():
+    write_lock.register()
     bpy.utils.register_class(KestrelRenderEngine)
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).append(handler)
@@ -122,4 +126,5 @@ def unregister():
         getattr(bpy.app.handlers, name).remove(handler)
     viewport.close_all()
     bpy.utils.unregister_class(KestrelRenderEngine)
+    write_lock.unregister()
     session.drop_all()

@@ -6,7 +6,7 @@ from unittest import mock
 
 import bpy
 import numpy as np
-from kestrel import engine, session
+from kestrel import engine, session, viewport
 from support import shader_material
 from viewport_support import ViewportTest
 
@@ -85,6 +85,28 @@ class IconTest(ViewportTest):
         self.assertEqual(view._session.edits, before)
         self.assertEqual(session.count(), 1)
         self.assertEqual(len(self.times), 1)
+
+    def test_python_may_write_afterwards(self):
+        """Also where an icon begins while a view is being drawn."""
+        red = self.still_life()
+        self.look()
+        self.scene.kestrel.viewport_samples = 4096
+        original = viewport.Viewport.draw
+
+        def draw_slowly(*arguments):
+            original(*arguments)
+            time.sleep(0.02)
+        patch = mock.patch.object(viewport.Viewport, "draw", draw_slowly)
+        patch.start()
+        self.addCleanup(patch.stop)
+        self.render_shading()
+        yield lambda: bool(self.viewport.picture)
+        for _ in range(3):
+            self.ask(red.active_material)
+            done = len(self.times) + 1
+            yield lambda: (self.area.tag_redraw(), len(self.times) == done)[1]
+            yield None
+            self.scene["written"] = True
 
     def test_material_preview_shows_eevee(self):
         material = bpy.data.materials.new("Red")

@@ -51,7 +51,7 @@ class MotionTest(ViewportTest):
         self.render_shading()
         yield self.settled
         before = self.pixels()
-        meshes, transforms = (self.count_calls(n) for n in ("set_mesh", "set_object_transform"))
+        meshes, transforms = (self.count_calls(n) for n in ("set_mesh", "set_object_transforms"))
         red.location.x += 0.5
         yield lambda: psnr(self.pixels(), before) < 30.0 if (
             self.viewport.picture.width == self.size[0]) else False
@@ -98,7 +98,7 @@ class MotionTest(ViewportTest):
         self.addCleanup(setattr, system, "use_region_overlap", True)
         self.render_shading()
         yield self.settled
-        first, objects = self.viewport, self.count_calls("set_object")
+        first, objects = self.viewport, self.count_calls("set_objects")
         used = []
         for turn in range(RESIZES):
             width = self.region.width
