@@ -57,6 +57,7 @@ class PanelCase(SceneTest):
         node_light = self.light("POINT", 1.0, use_nodes=True)
         yield self.context(node_light)
         self.world((0.1, 0.1, 0.1))
+        self.scene.view_layers[0].use_pass_mist = True
         yield self.context(material=material)
         self.scene.world.use_nodes = False
         yield self.context()

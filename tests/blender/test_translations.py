@@ -9,7 +9,7 @@ from test_panels import PanelCase, kestrel_properties
 
 # Blender's own words that one of the languages writes as English does.
 SAME = {"Albedo", "Angle", "Asset", "Cryptomatte", "Debug", "Diffuse", "Emission", "Film",
-        "Material", "Normal", "Passes", "Performance", "Position", "Surface", "Threads",
+        "Material", "Normal", "Passes", "Performance", "Position", "Start", "Surface", "Threads",
         "Transmission", "Transparent", "Type", "UV", "Z"}
 
 

@@ -47,8 +47,26 @@ class KESTREL_WORLD_PT_surface(WorldPanel, bpy.types.Panel):
             layout.prop(world, "color")
 
 
+class KESTREL_WORLD_PT_mist(WorldPanel, bpy.types.Panel):
+    bl_label = "Mist Pass"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def shown(cls, context):
+        return context.world is not None and any(
+            layer.use_pass_mist for layer in context.scene.view_layers)
+
+    def draw(self, context):
+        layout, mist = self.layout, context.world.mist_settings
+        layout.use_property_split = True
+        layout.prop(mist, "start")
+        layout.prop(mist, "depth")
+        layout.prop(mist, "falloff")
+
+
 CLASSES = (
     KESTREL_WORLD_PT_context,
     KESTREL_WORLD_PT_preview,
     KESTREL_WORLD_PT_surface,
+    KESTREL_WORLD_PT_mist,
 )
