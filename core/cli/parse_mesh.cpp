@@ -17,10 +17,10 @@ constexpr size_t kMaximumAttributes = 1000;  // of one mesh
 MeshDescription parse_primitive(const JsonNode& node, const JsonNode& primitive) {
   const int kind = primitive.choice({"plane", "cube", "sphere"});
   if (kind != 2) {
-    node.expect_keys({"name", "primitive"});
+    node.expect_keys({"name", "label", "primitive"});
     return kind == 0 ? make_plane() : make_cube();
   }
-  node.expect_keys({"name", "primitive", "slices", "stacks", "smooth"});
+  node.expect_keys({"name", "label", "primitive", "slices", "stacks", "smooth"});
   const auto slices = node.find("slices");
   const auto stacks = node.find("stacks");
   const auto smooth = node.find("smooth");
@@ -30,7 +30,7 @@ MeshDescription parse_primitive(const JsonNode& node, const JsonNode& primitive)
 }
 
 MeshDescription parse_file(const JsonNode& node, const JsonNode& file, ModelCache& models) {
-  node.expect_keys({"name", "file", "part", "up", "normals", "triangles"});
+  node.expect_keys({"name", "label", "file", "part", "up", "normals", "triangles"});
   const auto part = node.find("part");
   const auto target = node.find("triangles");
   const auto normals = node.find("normals");

@@ -63,27 +63,29 @@ uint64_t parse_reference(const JsonNode& node, const std::string& key, const Nam
   return reference ? static_cast<uint64_t>(textures.find(*reference)) + 1 : 0;
 }
 
-/// RGB, and A within 0…1 where it is given. Colours above 1 are no error: old scenes hold them.
+/// RGB, and A within 0…1 where it is given. Colours beyond that are no error: scenes hold them.
 void parse_rgba(const JsonNode& node, float* out) {
-  const std::vector<float> values = node.numbers(3, 4, 0, kMaximumRadiance);
-  if (values.size() == 4 && values[3] > 1.0f) {
+  const std::vector<float> values = node.numbers(3, 4, -kMaximumRadiance, kMaximumRadiance);
+  if (values.size() == 4 && !(values[3] >= 0.0f && values[3] <= 1.0f)) {
     node.fail("the fourth number must lie from 0 to 1, found {}", values[3]);
   }
   copy(values, out);
 }
 
 void parse_colors(const JsonNode& node, KestrelMaterial& m) {
-  if (const auto n = node.find("emission")) copy(n->numbers(3, 3, 0, kMaximumRadiance), m.emission);
+  if (const auto n = node.find("emission"))
+    copy(n->numbers(3, 3, -kMaximumRadiance, kMaximumRadiance), m.emission);
   if (const auto n = node.find("diffuse")) parse_rgba(*n, m.diffuse);
   if (const auto n = node.find("specular")) parse_rgba(*n, m.specular);
   if (const auto n = node.find("reflection_color"))
-    copy(n->numbers(3, 3, 0, kMaximumRadiance), m.reflection_color);
+    copy(n->numbers(3, 3, -kMaximumRadiance, kMaximumRadiance), m.reflection_color);
   if (const auto n = node.find("transmission_color")) {
-    copy(n->numbers(3, 3, 0, kMaximumRadiance), m.transmission_color);
+    copy(n->numbers(3, 3, -kMaximumRadiance, kMaximumRadiance), m.transmission_color);
   }
   // A surface whose ambient colour is not given reflects ambient light as it does any other.
   std::copy(m.diffuse, m.diffuse + 3, m.ambient);
-  if (const auto n = node.find("ambient")) copy(n->numbers(3, 3, 0, kMaximumRadiance), m.ambient);
+  if (const auto n = node.find("ambient"))
+    copy(n->numbers(3, 3, -kMaximumRadiance, kMaximumRadiance), m.ambient);
   if (const auto n = node.find("reflectivity")) m.optical[0] = n->number(0, 1);
   if (const auto n = node.find("ior")) m.optical[1] = n->number(0.1, 10);
   if (const auto n = node.find("opacity")) m.optical[2] = n->number(0, 1);

@@ -262,7 +262,7 @@ WorldDescription parse_world(const JsonNode& node, const Names& textures, SceneD
     node.fail("has several of 'image', 'cube' and 'textures'; use one of them");
   }
   const float factor = image || cube || named ? 1.0f : 0.0f;
-  world.color = parse_vec3(node, "color", vec3(factor), 0, kMaximumRadiance);
+  world.color = parse_vec3(node, "color", vec3(factor), -kMaximumRadiance, kMaximumRadiance);
   if (const auto strength = node.find("strength")) {
     world.color *= strength->number(0, kMaximumRadiance);
   }

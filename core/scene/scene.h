@@ -88,8 +88,6 @@ enum class Extension : uint8_t { repeat, clamp, clip };
 /// Texels, row 0 at the bottom (v = 0). Either 8-bit RGBA or float RGBA, never both.
 struct Texture {
   std::string name;
-  std::string path;  // of the file that it was read from; empty: texels were given, or decoded from
-                     // bytes, or stand in for a file that could not be read
   int width = 0;
   int height = 0;
   bool srgb = false;     // 8-bit RGB is sRGB-encoded and decoded before filtering; alpha is linear
@@ -98,6 +96,8 @@ struct Texture {
   int channels8 = 4;                // 3 where every texel is opaque, so that it needs less memory
   std::vector<uint8_t> texels8;     // RGB or RGBA, straight alpha
   std::vector<float> texels_float;  // RGBA, linear
+  std::string path;  // of the file that it was read from; empty: texels were given, or decoded from
+                     // bytes, or stand in for a file that could not be read
 };
 
 enum class AlphaMode : uint8_t {

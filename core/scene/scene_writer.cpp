@@ -2,7 +2,6 @@
 #include "scene/scene_writer.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -12,17 +11,14 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/whole_file.h"
+#include "scene/array_file.h"
 #include "scene/scene_file_words.h"
 
 namespace kestrel {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(vec2) == 8 && sizeof(vec3) == 12 && sizeof(vec4) == 16 && sizeof(uvec3) == 12);
 
 constexpr int kMaximumSide = 65536;  // pixels of a picture
 
@@ -62,11 +58,14 @@ double degrees(float radians) {
 
 /// A name without what scene files do not take.
 std::string plain(std::string text) {
+  constexpr size_t kRoom = 16;  // for what tells equal names apart
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20) c = '?';
   }
-  if (text.size() > kMaximumSceneText) text.resize(kMaximumSceneText);
-  return text;
+  if (text.size() <= kMaximumSceneText - kRoom) return text;
+  size_t length = kMaximumSceneText - kRoom;
+  while ((text[length] & 0xC0) == 0x80) --length;  // not within a character
+  return text.substr(0, length);
 }
 
 Json setting_value(const Parameter& row, const std::string& text) {
@@ -97,61 +96,6 @@ Json setting_value(const Parameter& row, const std::string& text) {
   return text;
 }
 
-// ---- arrays ------------------------------------------------------------------------------------
-
-/// The file of arrays.
-class Buffer {
- public:
-  explicit Buffer(const std::string& path) : file_(path) { piece_.reserve(kSceneBufferPiece); }
-
-  /// Appends `count` values, `width` to an item; their place in the file.
-  template <typename T>
-  Json add(const T* values, size_t count) {
-    const Json place = {{"offset", size_}, {"count", count}};
-    append(values, count * sizeof(T));
-    static constexpr char kPadding[4] = {};
-    append(kPadding, (4 - size_ % 4) % 4);
-    return place;
-  }
-  /// The numbers of vectors.
-  template <typename Vector>
-  Json add(const std::vector<Vector>& vectors) {
-    return add(&vectors[0][0], vectors.size() * static_cast<size_t>(Vector::length()));
-  }
-
-  /// Nothing is added any more; what the scene file says of the whole.
-  Json close() {
-    end_piece();
-    file_.close();
-    return {{"bytes", size_}, {"hash", fmt::format("{:016x}{:016x}", hash_.high, hash_.low)}};
-  }
-  void publish() { file_.publish(); }
-
- private:
-  void append(const void* data, size_t byte_count) {
-    const auto* bytes = static_cast<const uint8_t*>(data);
-    size_ += byte_count;
-    while (byte_count > 0) {
-      const size_t part = std::min(byte_count, kSceneBufferPiece - piece_.size());
-      piece_.insert(piece_.end(), bytes, bytes + part);
-      bytes += part;
-      byte_count -= part;
-      if (piece_.size() == kSceneBufferPiece) end_piece();
-    }
-  }
-  void end_piece() {
-    if (piece_.empty()) return;
-    hash_ = hash_bytes(piece_, hash_);
-    file_.write(piece_.data(), piece_.size());
-    piece_.clear();
-  }
-
-  WholeFile file_;
-  std::vector<uint8_t> piece_;  // not yet written
-  size_t size_ = 0;             // bytes
-  Hash128 hash_;
-};
-
 // ---- names -------------------------------------------------------------------------------------
 
 /// Names of one array's elements, by which others refer to them: the element's own, but told apart
@@ -162,7 +106,8 @@ class UniqueNames {
   Json element(const std::string& name) {
     const std::string label = plain(name);
     std::string unique = label;
-    for (int i = 2; !taken_.insert(unique).second; ++i) unique = fmt::format("{} #{}", label, i);
+    int& number = numbers_.emplace(label, 1).first->second;
+    while (!taken_.insert(unique).second) unique = fmt::format("{} #{}", label, ++number);
     Json out = {{"name", unique}};
     if (unique != label) out["label"] = label;
     return out;
@@ -170,6 +115,7 @@ class UniqueNames {
 
  private:
   std::set<std::string> taken_;
+  std::map<std::string, int> numbers_;  // by label, the last one tried
 };
 
 /// Elements of an array in the order in which they are first referred to.
@@ -261,45 +207,45 @@ void add_settings(const ObjectSettings& settings, Json& out) {
   }
 }
 
-Json mesh_motion(const MeshMotion& motion, Buffer& buffer) {
+Json mesh_motion(const MeshMotion& motion, ArrayFile& arrays) {
   Json out = Json::array();
   for (const MeshShape& shape : motion) {
-    Json step = {{"positions", buffer.add(shape.positions)}};
-    if (!shape.corner_normals.empty()) step["normals"] = buffer.add(shape.corner_normals);
+    Json step = {{"positions", arrays.add(shape.positions)}};
+    if (!shape.corner_normals.empty()) step["normals"] = arrays.add(shape.corner_normals);
     out.push_back(std::move(step));
   }
   return out;
 }
 
-Json mesh_element(const Mesh& mesh, UniqueNames& names, Buffer& buffer) {
+Json mesh_element(const Mesh& mesh, UniqueNames& names, ArrayFile& arrays) {
   Json out = names.element(mesh.name);
-  out["positions"] = buffer.add(mesh.positions);
-  out["triangles"] = buffer.add(mesh.triangles);
-  if (!mesh.corner_normals.empty()) out["normals"] = buffer.add(mesh.corner_normals);
-  if (!mesh.corner_uvs.empty()) out["uvs"] = buffer.add(mesh.corner_uvs);
-  if (mesh.tangents_given) out["tangents"] = buffer.add(mesh.corner_tangents);
+  out["positions"] = arrays.add(mesh.positions);
+  out["triangles"] = arrays.add(mesh.triangles);
+  if (!mesh.corner_normals.empty()) out["normals"] = arrays.add(mesh.corner_normals);
+  if (!mesh.corner_uvs.empty()) out["uvs"] = arrays.add(mesh.corner_uvs);
+  if (mesh.tangents_given) out["tangents"] = arrays.add(mesh.corner_tangents);
   if (!mesh.triangle_materials.empty()) {
-    out["slots"] = buffer.add(mesh.triangle_materials.data(), mesh.triangle_materials.size());
+    out["slots"] = arrays.add(mesh.triangle_materials);
   }
   if (mesh.uv_map) out["uv_map"] = mesh.uv_map;
   Json attributes = Json::array();
   for (const UvMap& map : mesh.more_uv_maps) {
-    attributes.push_back({{"id", map.id}, {"uvs", buffer.add(map.corner_uvs)}});
+    attributes.push_back({{"id", map.id}, {"uvs", arrays.add(map.corner_uvs)}});
   }
   for (const ColorAttribute& colors : mesh.color_attributes) {
-    attributes.push_back({{"id", colors.id}, {"colors", buffer.add(colors.corner_colors)}});
+    attributes.push_back({{"id", colors.id}, {"colors", arrays.add(colors.corner_colors)}});
   }
   if (!attributes.empty()) out["attributes"] = std::move(attributes);
-  if (mesh.motion) out["motion"] = mesh_motion(*mesh.motion, buffer);
+  if (mesh.motion) out["motion"] = mesh_motion(*mesh.motion, arrays);
   return out;
 }
 
-Json texel_element(const Texture& texture, Buffer& buffer) {
+Json texel_element(const Texture& texture, ArrayFile& arrays) {
   Json out = {{"width", texture.width}, {"height", texture.height}};
   if (!texture.texels_float.empty()) {
-    out["floats"] = buffer.add(texture.texels_float.data(), texture.texels_float.size());
+    out["floats"] = arrays.add(texture.texels_float);
   } else if (texture.channels8 == 4) {
-    out["bytes"] = buffer.add(texture.texels8.data(), texture.texels8.size());
+    out["bytes"] = arrays.add(texture.texels8);
   } else {
     std::vector<uint8_t> rgba;
     rgba.reserve(texture.texels8.size() / 3 * 4);
@@ -307,7 +253,7 @@ Json texel_element(const Texture& texture, Buffer& buffer) {
       rgba.insert(rgba.end(), &texture.texels8[i], &texture.texels8[i] + 3);
       rgba.push_back(255);
     }
-    out["bytes"] = buffer.add(rgba.data(), rgba.size());
+    out["bytes"] = arrays.add(rgba);
   }
   return out;
 }
@@ -316,7 +262,7 @@ Json texel_element(const Texture& texture, Buffer& buffer) {
 
 class SceneWriter {
  public:
-  SceneWriter(const Scene& scene, Buffer& buffer) : scene_(scene), buffer_(buffer) {
+  SceneWriter(const Scene& scene, ArrayFile& arrays) : scene_(scene), arrays_(arrays) {
     std::vector<const Object*> objects;
     for (const Object& object : scene.objects) objects.push_back(&object);
     std::sort(objects.begin(), objects.end(),
@@ -346,7 +292,7 @@ class SceneWriter {
     add_array(out, "materials", materials_.items());
     add_array(out, "meshes", meshes_.items());
     add_array(out, "objects", objects_);
-    add_value(out, "buffer", buffer_.close());
+    add_value(out, "buffer", arrays_.close());
     return out + "}\n";
   }
 
@@ -378,7 +324,7 @@ class SceneWriter {
           path.empty() ? texture.name : std::filesystem::path(path).filename().string();
       Json out = names.element(name.empty() ? "texture" : name);
       if (path.empty()) {
-        out["pixels"] = texel_element(texture, buffer_);
+        out["pixels"] = texel_element(texture, arrays_);
       } else {
         out["file"] = path;
       }
@@ -446,7 +392,7 @@ class SceneWriter {
     const Unit& unit = scene_.units[object.unit];
     Json out = {{"name", name}};
     out["mesh"] = meshes_.name_of(object.mesh, [&](UniqueNames& names) {
-      return mesh_element(*scene_.meshes[object.mesh], names, buffer_);
+      return mesh_element(*scene_.meshes[object.mesh], names, arrays_);
     });
     out["materials"] = material_names(object.materials);
     out["matrix"] = matrix_numbers(object.world_from_object);
@@ -477,7 +423,7 @@ class SceneWriter {
   }
 
   const Scene& scene_;
-  Buffer& buffer_;
+  ArrayFile& arrays_;
   std::vector<std::string> objects_;  // as text
   Json world_;
   std::set<int> units_;  // whose settings are written
@@ -497,11 +443,11 @@ void write_scene(const Scene& scene, const std::string& path, int width, int hei
          width, height, kMaximumSide);
   }
   WholeFile file(path);
-  Buffer buffer(scene_buffer_path(path));
-  const std::string text = SceneWriter(scene, buffer).text(width, height);
+  ArrayFile arrays(scene_buffer_path(path));
+  const std::string text = SceneWriter(scene, arrays).text(width, height);
   file.write(text.data(), text.size());
   file.close();
-  buffer.publish();
+  arrays.publish();
   file.publish();
 }
 

@@ -203,6 +203,7 @@ class Everything {
     m.tangent_map = 0xFEDCBA9876543210u;
     check(kestrelSetMaterial(s, 2, &m));
     m = material("Leaf", 0.9f);
+    m.emission[0] = -0.02f;
     m.emission[1] = 0.05f;
     m.emission_texture = 4;
     m.alpha_mode = KESTREL_ALPHA_MASK;
@@ -431,6 +432,41 @@ TEST_F(WrittenScene, KeepsTexelsOfFilesThatCannotBeRead) {
   check(kestrelCommitScene(scene.get()));
   const ScenePtr back = read_back(save(scene.get(), "scene"));
   EXPECT_EQ(render(scene.get()).at("Combined"), render(back.get()).at("Combined"));
+}
+
+TEST_F(WrittenScene, KeepsApartWhatIsCalledTheSame) {
+  const ScenePtr scene = filled();
+  const std::string endless(5000, 'x'), umlauts = [] {
+    std::string text = "x";
+    while (text.size() < 5000) text += "\u00FC";
+    return text;
+  }();
+  const uint64_t slots[] = {1, 2, 3, 11, 12, 13, 14, 15};
+  uint64_t id = 11;
+  for (const char* name :
+       {"Metal #2", "Metal", endless.c_str(), endless.c_str(), umlauts.c_str()}) {
+    const KestrelMaterial m = material(name, 0.1f * static_cast<float>(id));
+    check(kestrelSetMaterial(scene.get(), id++, &m));
+  }
+  const Tetrahedron shape;
+  const std::vector<uint32_t> used = {4, 5, 6, 7};
+  KestrelMesh mesh = shape.plain("Line\nbreak");
+  mesh.triangle_materials = used.data();
+  check(kestrelSetMesh(scene.get(), 9, &mesh));
+  const KestrelObject more = object("More", 9, slots, 0.0f);
+  check(kestrelSetObject(scene.get(), 9, &more));
+  check(kestrelCommitScene(scene.get()));
+  const std::string path = save(scene.get(), "first");
+  const ScenePtr back = read_back(path);
+  expect_same_files(path, save(back.get(), "second"));
+  EXPECT_EQ(render(scene.get()).at("Combined"), render(back.get()).at("Combined"));
+  const json document = json::parse(text_of(path));
+  std::vector<std::string> labels;
+  for (const json& m : document.at("materials")) {
+    labels.push_back(m.value("label", m.at("name").get<std::string>()));
+  }
+  EXPECT_EQ(labels[3], "Metal #2");
+  EXPECT_EQ(labels[4], "Metal");
 }
 
 TEST_F(WrittenScene, ASceneWithNothingInItIsWritten) {
