@@ -89,6 +89,13 @@ const char* kestrelGetParameterTable(void) {
   });
 }
 
+const char* kestrelGetNodeTable(void) {
+  return guarded_or("{}", [] {
+    static const auto& table = *new std::string(node_table_json());
+    return table.c_str();
+  });
+}
+
 KestrelError kestrelHash(const void* data, size_t byte_count, uint64_t hash[2]) {
   return guarded([&] {
     require(hash, "hash");

@@ -173,6 +173,38 @@ typedef enum KestrelAlphaMode {
   KESTREL_ALPHA_BLEND = 2   /* alpha is coverage */
 } KestrelAlphaMode;
 
+/* One step of a node program: `result` = op(operands). What there is says kestrelGetNodeTable(). */
+typedef struct KestrelNodeInstruction {
+  uint32_t op;
+  uint32_t mode;       /* choices of all its modes in mixed radix, the first one's digit lowest */
+  int32_t result;      /* register, 0… */
+  int32_t data;        /* by op: index of a texture, an attribute or a constant; else 0 */
+  int32_t operands[8]; /* each a register, or -1 - n for constant n; those it lacks: 0 */
+} KestrelNodeInstruction;
+
+#define KESTREL_NODE_OUTPUTS 10
+#define KESTREL_NODE_UNSET INT32_MIN
+
+/* A program that computes a surface's properties wherever it is looked at, from a node graph:
+ * emission, ambient, diffuse, alpha, specular, roughness, reflection, transmission, ior, normal
+ * (their numbers: "outputs" of the table). Registers and constants hold 4 floats. */
+typedef struct KestrelNodeProgram {
+  const KestrelNodeInstruction* instructions;
+  size_t instruction_count; /* at most 65536 */
+  const float* constants;   /* 4 per constant */
+  size_t constant_count;
+  const uint64_t* textures; /* ids */
+  size_t texture_count;
+  const uint64_t* attributes; /* ids of what meshes bring; 0: their corner_uvs */
+  size_t attribute_count;
+  int32_t outputs[KESTREL_NODE_OUTPUTS]; /* operands, or KESTREL_NODE_UNSET: the material's own */
+} KestrelNodeProgram;
+
+/* The table of node instructions as a JSON object: "ops", a list of {"name", "modes" (a list of
+ * values for each digit), "operands", "data" (none, place, texture, attribute, table, constant)},
+ * "outputs", "registers", "table_size". Never NULL. */
+KESTREL_API const char* kestrelGetNodeTable(void);
+
 /* Each property is its colour times its texture (0: none). Start from kestrelDefaultMaterial(). */
 typedef struct KestrelMaterial {
   const char* name;
@@ -203,6 +235,7 @@ typedef struct KestrelMaterial {
   uint64_t emission_attribute; /* colours that multiply; 0: none; black where the mesh has none */
   uint64_t ambient_attribute;
   uint64_t diffuse_attribute;
+  const KestrelNodeProgram* program; /* takes the place of the properties it computes; NULL: none */
 } KestrelMaterial;
 
 /* Grey, matte, opaque: diffuse and ambient 0.8, no specular, index of refraction 1. */
