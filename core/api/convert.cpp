@@ -148,6 +148,28 @@ size_t texel_values(int width, int height) {
   return 4 * static_cast<size_t>(width) * static_cast<size_t>(height);
 }
 
+static_assert(sizeof(KestrelNodeInstruction) == sizeof(nodes::NodeInstruction) &&
+              KESTREL_NODE_OUTPUTS == nodes::kNodeOutputs && KESTREL_NODE_UNSET == kNodeUnset);
+
+std::shared_ptr<NodeProgram> program_from(const KestrelNodeProgram& program,
+                                          const std::string& material) {
+  check_count(program.constant_count, material, "constants");
+  auto out = std::make_shared<NodeProgram>();
+  const auto steps = array(program.instructions, program.instruction_count, "instructions");
+  out->instructions.resize(steps.size());
+  if (!steps.empty()) std::memcpy(out->instructions.data(), steps.data(), steps.size_bytes());
+  const auto constants = array(program.constants, 4 * program.constant_count, "constants");
+  for (size_t i = 0; i < constants.size(); i += 4) {
+    out->constants.push_back(vec4_from(&constants[i]));
+  }
+  const auto textures = array(program.textures, program.texture_count, "textures");
+  out->texture_ids.assign(textures.begin(), textures.end());
+  const auto attributes = array(program.attributes, program.attribute_count, "attributes");
+  out->attributes.assign(attributes.begin(), attributes.end());
+  std::copy(std::begin(program.outputs), std::end(program.outputs), out->outputs.begin());
+  return out;
+}
+
 MaterialInput material_from(const KestrelMaterial& material) {
   MaterialInput out;
   Material& m = out.values;
@@ -179,6 +201,7 @@ MaterialInput material_from(const KestrelMaterial& material) {
   m.emission_colors = material.emission_attribute;
   m.ambient_colors = material.ambient_attribute;
   m.diffuse_colors = material.diffuse_attribute;
+  if (material.program) out.program = program_from(*material.program, m.name);
   return out;
 }
 

@@ -27,6 +27,9 @@ MeshInput mesh_from(const KestrelMesh& mesh);
 TextureOptions options_from(const KestrelTextureOptions* options);
 /// The number of values of a picture with 4 channels; throws where a side is not in 1…32768.
 size_t texel_values(int width, int height);
+/// `material`: its name, for errors.
+std::shared_ptr<NodeProgram> program_from(const KestrelNodeProgram& program,
+                                          const std::string& material);
 MaterialInput material_from(const KestrelMaterial& material);
 LightInput light_from(const KestrelLight& light);
 ObjectInput object_from(const KestrelObject& object);

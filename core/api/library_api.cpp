@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "params/params.h"
+#include "shading/node_table.h"
 
 using namespace kestrel;
 using namespace kestrel::api;

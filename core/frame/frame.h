@@ -95,10 +95,13 @@ struct GBuffer {
   Plane<vec4> motion;                // pixels moved since the state before (XY) and until the one
                                      // after (ZW); of the first sample, where the pass is wanted
   Plane<uint8_t> holdout;            // 1: a holdout is in front, and so nothing; empty without any
+  Plane<vec3> reflection_color;      // tints, as the material's; of primary rays in scenes with
+  Plane<vec3> transmission_color;    // node programs, else empty: the material's
   Plane<vec2> uv;                    // of the mesh, before the material's tiling; may be left out
   std::vector<SurfaceLayer> behind;  // by pixel, front to back; may be left out
 
-  /// The planes of every frame, and `uv`; `motion`, `holdout` and `behind` stay as they are.
+  /// The planes of every frame, and `uv`; `motion`, `holdout`, `behind` and the tints stay as they
+  /// are.
   void resize(const FrameInputs& inputs);
 
   /// Makes a pixel show nothing, in front of this radiance.

@@ -10,6 +10,7 @@
 
 #include "base/math.h"
 #include "params/params.h"
+#include "scene/node_program.h"
 #include "scene/pose.h"
 
 namespace kestrel {
@@ -146,6 +147,7 @@ struct Material {
   uint64_t emission_colors = 0;          // colour attributes of the mesh that multiply; 0: none
   uint64_t ambient_colors = 0;
   uint64_t diffuse_colors = 0;
+  std::shared_ptr<const NodeProgram> program;  // computes properties in their place; null: none
 
   bool has_colors() const { return (emission_colors | ambient_colors | diffuse_colors) != 0; }
   /// Whether one UV map is not all that it takes from the mesh.
@@ -155,12 +157,17 @@ struct Material {
                                          specular_texture, normal_texture,  optical_texture};
     return textures[slot];
   }
-  bool reflective() const { return optical.x > 0.0f; }
-  bool refractive() const { return optical.z < 1.0f || alpha_mode == AlphaMode::blend; }
+  bool reflective() const {
+    return optical.x > 0.0f || (program && program->may_be_lit(nodes::kNodeReflection));
+  }
+  bool refractive() const {
+    return optical.z < 1.0f || alpha_mode == AlphaMode::blend ||
+           (program && program->may_be_lit(nodes::kNodeTransmission));
+  }
   /// Whether some shadow ray may get past it or must look at its texture.
   bool needs_any_hit() const {
-    return !casts_shadow || alpha_mode != AlphaMode::opaque || optical.z < 1.0f ||
-           optical_texture != kNone;
+    return !casts_shadow || alpha_mode != AlphaMode::opaque || optical_texture != kNone ||
+           refractive();
   }
 };
 
@@ -207,6 +214,7 @@ struct Object {
   std::shared_ptr<const std::vector<mat4x3>> motion_matrices;  // what `motion` was made from
   int pass_index = 0;                                          // for compositing
   std::string asset;  // what it is a part of; its own name where it is none
+  float random = 0.0f;  // 0…1, another one for every object
 };
 
 /// What the heuristic selects: an object, or all instances of one instancer.
@@ -266,6 +274,7 @@ struct Scene {
   World world;
   Settings settings;
   bool has_holdouts = false;  // whether some object is one
+  bool has_programs = false;  // whether some material has one
 
   /// Whether Combined's alpha may be below 1.
   bool has_alpha() const { return settings.film_transparent || has_holdouts; }

@@ -27,9 +27,13 @@ void require_id(uint64_t id, const char* kind) {
   }
 }
 
-std::array<uint64_t, 6> texture_ids(const MaterialInput& m) {
-  return {m.emission_texture, m.ambient_texture, m.diffuse_texture,
-          m.specular_texture, m.normal_texture,  m.optical_texture};
+std::vector<uint64_t> texture_ids(const MaterialInput& m) {
+  std::vector<uint64_t> ids = {m.emission_texture, m.ambient_texture, m.diffuse_texture,
+                               m.specular_texture, m.normal_texture,  m.optical_texture};
+  if (m.program) {
+    ids.insert(ids.end(), m.program->texture_ids.begin(), m.program->texture_ids.end());
+  }
+  return ids;
 }
 
 /// Slots without a texture take the UV map of the others, so that one map is known as one.
@@ -127,6 +131,7 @@ void SceneBuilder::set_material(uint64_t id, MaterialInput input) {
   require_id(id, "material");
   name_by_id(input.values.name, "material", id);
   check_material(input);
+  if (input.program) check_program(*input.program, input.values.name);
   materials_.put(id, std::move(input));
 }
 
@@ -309,6 +314,14 @@ void SceneBuilder::add_materials(Assembly& out) {
     material.normal_texture = out.texture_index(textures_, input.normal_texture);
     material.optical_texture = out.texture_index(textures_, input.optical_texture);
     unite_uv_maps(material);
+    if (input.program) {
+      const auto program = std::make_shared<NodeProgram>(*input.program);
+      for (const uint64_t id : program->texture_ids) {
+        program->textures.push_back(out.texture_index(textures_, id));
+      }
+      material.program = program;
+      out.scene->has_programs = true;
+    }
     out.material_indices[id] = static_cast<int>(out.scene->materials.size());
     out.scene->materials.push_back(std::move(material));
   }
@@ -363,7 +376,9 @@ void SceneBuilder::add_object(Assembly& out, uint64_t id, const ObjectEntry& ent
     const Material& material = out.scene->materials[object.materials[slot]];
     unit.reflective = unit.reflective || material.reflective();
     unit.refractive = unit.refractive || material.refractive();
-    if (material.normal_texture != kNone) tangent_maps.push_back(material.tangent_map);
+    if (material.normal_texture != kNone || (material.program && material.program->reads_tangent)) {
+      tangent_maps.push_back(material.tangent_map);
+    }
   }
   unit.bounds.extend(transformed(valid.mesh->bounds, input.world_from_object));
   object.mesh = mesh_index(out, input.mesh, tangent_maps);

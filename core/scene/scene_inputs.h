@@ -21,6 +21,7 @@ struct MaterialInput {
   uint64_t specular_texture = 0;
   uint64_t normal_texture = 0;
   uint64_t optical_texture = 0;
+  std::shared_ptr<NodeProgram> program;  // null: none
 };
 
 /// `values.spot_angle` and `cos_outer` are not read, `values.direction` need not be unit.

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "frame/blend_weights.h"
 #include "frame/frame.h"
 
 namespace kestrel {
@@ -15,18 +16,6 @@ namespace kestrel {
 /// and their average. C is kept from falling below 0, where L was rounded.
 vec3 blend_pixel(const vec3& lighting, const vec3& shadow, const vec3& reflection,
                  const vec3& refraction, float reflectivity, float transparency);
-
-/// What the average of equations 5 and 6 weighs each part with; they add up to 1.
-struct BlendWeights {
-  float surface;     // (1 - O_M) (1 - O_R)
-  float reflection;  // O_M (1 - O_R / 2)
-  float refraction;  // O_R (1 - O_M / 2)
-};
-
-inline BlendWeights blend_weights(float reflectivity, float transparency) {
-  return {(1.0f - reflectivity) * (1.0f - transparency),
-          reflectivity * (1.0f - 0.5f * transparency), transparency * (1.0f - 0.5f * reflectivity)};
-}
 
 class BlendStage {
  public:

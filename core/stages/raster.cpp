@@ -239,6 +239,8 @@ void RasterStage::update(const std::shared_ptr<const Scene>& scene) {
 
 void RasterStage::run(const FrameInputs& inputs, GBuffer& out) {
   out.resize(inputs);
+  out.reflection_color.clear();
+  out.transmission_color.clear();
   if (inputs.region.pixels() == 0) return;
   impl_->context->run([&] { impl_->passes->run(inputs, out); });
   punch_holdouts(inputs, out);

@@ -109,21 +109,22 @@ NODE_FUNCTION vec4 node_curves(NODE_HOST_PARAMETER int first, vec3 v) {
 NODE_FUNCTION vec3 node_normal_map(NODE_HOST_PARAMETER uint space, vec3 color, float strength,
                                    NodePoint p) {
   vec3 painted = color * 2.0f - vec3(1.0f);
+  float side = p.backfacing ? -1.0f : 1.0f;
   if (space == 0u) {
+    vec3 own = side * p.normal;
     vec3 along = vec3(p.tangent.x, p.tangent.y, p.tangent.z);
-    vec3 tangent = node_normalize(along - p.normal * dot(p.normal, along), vec3(0.0f));
+    vec3 tangent = node_normalize(along - own * dot(own, along), vec3(0.0f));
     if (p.tangent.w == 0.0f || tangent == vec3(0.0f)) return p.normal;
-    vec3 bitangent = cross(p.normal, tangent) * p.tangent.w;
+    vec3 bitangent = cross(own, tangent) * p.tangent.w;
     float height = mix(1.0f, painted.z, clamp(strength, 0.0f, 1.0f));
-    return node_normalize(painted.x * strength * tangent + painted.y * strength * bitangent +
-                              height * p.normal,
-                          p.normal);
+    return side * node_normalize(painted.x * strength * tangent +
+                                     painted.y * strength * bitangent + height * own,
+                                 own);
   }
   if (space >= 3u) painted = vec3(painted.x, -painted.y, -painted.z);  // as old Blenders baked them
   vec3 n = painted;
   if (space == 1u || space == 3u) n = node_transform(NODE_HOST painted, 2u, 1u, 0u);
-  n = node_normalize(n, p.normal);
-  if (p.backfacing) n = -n;
+  n = side * node_normalize(n, side * p.normal);
   return node_normalize(p.normal + (n - p.normal) * max(strength, 0.0f), p.normal);
 }
 

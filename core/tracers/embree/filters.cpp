@@ -18,6 +18,14 @@ SurfaceHit hit_of(const RTCFilterFunctionNArguments* args, unsigned i) {
                                    vec2(RTCHitN_u(args->hit, n, i), RTCHitN_v(args->hit, n, i)));
 }
 
+Look look_of(const RTCFilterFunctionNArguments* args, unsigned i) {
+  const unsigned n = args->N;
+  const vec3 direction(RTCRayN_dir_x(args->ray, n, i), RTCRayN_dir_y(args->ray, n, i),
+                       RTCRayN_dir_z(args->ray, n, i));
+  return {direction, RTCRayN_tfar(args->ray, n, i),
+          static_cast<uint8_t>(RTCRayN_mask(args->ray, n, i)), 0};
+}
+
 }  // namespace
 
 void skip_masked(const RTCFilterFunctionNArguments* args) {
@@ -28,7 +36,8 @@ void skip_masked(const RTCFilterFunctionNArguments* args) {
     const Object& object = scene.objects[hit.object];
     const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
     if (material.alpha_mode == AlphaMode::mask &&
-        evaluate_alpha(scene, object, hit) < material.alpha_cutoff) {
+        evaluate_alpha(scene, hit, rt_scene_of(args).normal_from_object()[hit.object],
+                       look_of(args, i)) < material.alpha_cutoff) {
       args->valid[i] = 0;
     }
   }
@@ -42,7 +51,9 @@ void attenuate_shadow(const RTCFilterFunctionNArguments* args) {
     ShadowState& state = states[RTCRayN_id(args->ray, args->N, i)];
     const SurfaceHit hit = hit_of(args, i);
     if (state.enter(hit.object, RTCRayN_tfar(args->ray, args->N, i))) {
-      state.transmitted *= shadow_transmission(scene, hit);
+      state.transmitted *=
+          shadow_transmission(scene, hit, rt_scene_of(args).normal_from_object()[hit.object],
+                              look_of(args, i));
     }
     if (max_component(state.transmitted) > 0.0f) args->valid[i] = 0;
   }

@@ -57,7 +57,7 @@ void trace_packet(const RtScene& rt, std::span<View> views, std::vector<SurfaceL
   }
   embree::Query query;
   embree::intersect(rt.handle(), query, valid.mask, packet);
-  const embree::PacketSurfaces met(rt, valid.mask, packet);
+  const embree::PacketSurfaces met(rt, valid.mask, packet, 0);
   size_t next = 0;
   for (size_t lane = 0; lane < views.size(); ++lane) {
     View& view = views[lane];

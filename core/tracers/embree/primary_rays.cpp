@@ -26,6 +26,10 @@ void store_hit(const Scene& scene, const CameraRays& camera, const SurfaceHit& h
   out.optical[i] = s.optical;
   out.depth[i] = camera.reversed_depth(s.position);
   out.object[i] = static_cast<uint32_t>(hit.object) + 1;
+  if (scene.has_programs) {
+    out.reflection_color[i] = s.reflection_color;
+    out.transmission_color[i] = s.transmission_color;
+  }
   out.material[i] =
       static_cast<uint32_t>(material_of(scene, scene.objects[hit.object], hit.triangle));
   if (!out.uv.empty()) out.uv[i] = mesh_uv(*scene.meshes[scene.objects[hit.object].mesh], hit);
@@ -47,7 +51,7 @@ void trace_packet(const RtScene& rt, const CameraRays& camera, int x0, int y0, G
   }
   embree::Query query;
   embree::intersect(rt.handle(), query, valid, packet);
-  embree::PacketSurfaces met(rt, valid, packet);
+  embree::PacketSurfaces met(rt, valid, packet, 0);
   size_t next = 0;
   for (int lane = 0; lane < embree::kPacket; ++lane) {
     if (valid[lane] == 0) continue;
@@ -71,6 +75,8 @@ uint64_t PrimaryRays::run(const FrameInputs& inputs, GBuffer& out) {
   const Region& region = inputs.region;
   out.resize(inputs);
   out.holdout.resize(inputs.scene.has_holdouts ? region.pixels() : 0);
+  out.reflection_color.resize(inputs.scene.has_programs ? region.pixels() : 0);
+  out.transmission_color.resize(inputs.scene.has_programs ? region.pixels() : 0);
   const CameraRays camera(inputs);
   for_tiles(region, [&](const Region& tile) {
     const int x0 = tile.x - region.x, y0 = tile.y - region.y;

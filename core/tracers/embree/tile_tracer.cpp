@@ -102,8 +102,9 @@ void TileTracer::gather_pixel(uint32_t i) {
                g.diffuse[i],
                g.specular[i],
                g.optical[i],
-               material.reflection_color,
-               material.transmission_color};
+               g.reflection_color.empty() ? material.reflection_color : g.reflection_color[i],
+               g.transmission_color.empty() ? material.transmission_color
+                                            : g.transmission_color[i]};
   p.entering = glm::dot(p.surface.normal_geometric, p.to_viewer) >= 0.0f;
   face_viewer(p.surface, p.to_viewer);
   p.reflectivity = effects & kReflections ? p.surface.optical.x : 0.0f;
@@ -206,7 +207,8 @@ void TileTracer::trace_depth() {
 /// `first`: the path of the packet's first lane.
 void TileTracer::shade_packet(size_t first, const embree::RayHitPacket& packet) {
   const size_t count = std::min<size_t>(embree::kPacket, paths_.size() - first);
-  const embree::PacketSurfaces met(rt_, embree::ValidLanes(count).mask, packet);
+  const embree::PacketSurfaces met(rt_, embree::ValidLanes(count).mask, packet,
+                                   paths_[first].depth);
   size_t next = 0;
   for (size_t lane = 0; lane < count; ++lane) {
     const Path& path = paths_[first + lane];

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One instruction of a node program. For the shaders and for C++.
+//
+// Who includes it brings, after NODE_HOST's arguments:
+//   vec4 node_texture(int texture, vec2 uv)       RGBA, linear
+//   vec4 node_attribute(int attribute, int place) value of the mesh: here, or a step beside
+//   vec4 node_constant(int index)
+//   vec3 node_transform(vec3 v, uint type, uint from, uint to)  as kNodeVectorTransform has them
+// NODE_HOST is empty in GLSL; in C++ it hands the point's own data from function to function.
+
+// The lowest digit of a mode with so many values; the rest stays in `mode`.
+NODE_FUNCTION uint node_digit(INOUT(uint) mode, uint count) {
+  uint digit = mode % count;
+  mode = mode / count;
+  return digit;
+}
+
+// `place`: 0 here, 1 and 2 a step beside (for bumps).
+NODE_FUNCTION vec4 node_input(uint what, int place, NodePoint p) {
+  vec3 beside = place == 1 ? p.step_x : place == 2 ? p.step_y : vec3(0.0f);
+  vec3 beside_os = place == 1 ? p.step_x_os : place == 2 ? p.step_y_os : vec3(0.0f);
+  switch (what) {
+    case kInputPosition: return node_vector(p.position + beside);
+    case kInputObject: return node_vector(p.position_os + beside_os);
+    case kInputGenerated:
+      return node_vector((p.position_os + beside_os - p.texture_space_from) *
+                         p.texture_space_scale);
+    case kInputCamera: return node_vector(p.position_camera);
+    case kInputWindow: return vec4(p.window.x, p.window.y, 0.0f, 1.0f);
+    case kInputReflection: return node_vector(2.0f * dot(p.incoming, p.normal) * p.normal - p.incoming);
+    case kInputNormal: return node_vector(p.normal);
+    case kInputObjectNormal: return node_vector(p.normal_os);
+    case kInputTrueNormal: return node_vector(p.true_normal);
+    case kInputTangent: return vec4(p.tangent.x, p.tangent.y, p.tangent.z, 1.0f);
+    case kInputIncoming: return node_vector(p.incoming);
+    case kInputParametric: return vec4(p.parametric.x, p.parametric.y, 0.0f, 1.0f);
+    case kInputBackfacing: return node_scalar(p.backfacing ? 1.0f : 0.0f);
+    case kInputObjectLocation: return node_vector(p.object_location);
+    case kInputObjectIndex: return node_scalar(p.object_index);
+    case kInputObjectRandom: return node_scalar(p.object_random);
+    case kInputMaterialIndex: return node_scalar(p.material_index);
+    case kInputIsCamera: return node_scalar(p.ray == kCameraRay ? 1.0f : 0.0f);
+    case kInputIsShadow: return node_scalar(p.ray == kShadowRay ? 1.0f : 0.0f);
+    case kInputIsReflection: return node_scalar(p.ray == kReflectionRay ? 1.0f : 0.0f);
+    case kInputIsTransmission: return node_scalar(p.ray == kRefractionRay ? 1.0f : 0.0f);
+    case kInputRayLength: return node_scalar(p.ray_length);
+    case kInputRayDepth: return node_scalar(float(p.ray_depth));
+    case kInputViewVector: return node_vector(node_normalize(p.position_camera, vec3(0.0f)));
+    case kInputViewDepth: return node_scalar(abs(p.position_camera.z));
+    case kInputViewDistance: return node_scalar(length(p.position_camera));
+    default: return vec4(0.0f);
+  }
+}
+
+// `projection`: the mode of kNodeImage.
+NODE_FUNCTION vec4 node_image(NODE_HOST_PARAMETER uint projection, int texture_index, vec3 v,
+                              float blend, NodePoint p) {
+  vec2 uv = vec2(v.x, v.y);
+  if (projection == 1u) {
+    vec3 weights = node_box_weights(p.normal_os, blend);
+    vec4 sum = vec4(0.0f);
+    if (weights.x > 0.0f) {
+      sum += weights.x * node_texture(NODE_HOST texture_index, node_box_side(0u, v, p.normal_os));
+    }
+    if (weights.y > 0.0f) {
+      sum += weights.y * node_texture(NODE_HOST texture_index, node_box_side(1u, v, p.normal_os));
+    }
+    if (weights.z > 0.0f) {
+      sum += weights.z * node_texture(NODE_HOST texture_index, node_box_side(2u, v, p.normal_os));
+    }
+    return sum;
+  }
+  if (projection == 2u) uv = node_sphere(v);
+  if (projection == 3u) uv = node_tube(v);
+  if (projection == 4u) uv = node_equirectangular(node_normalize(v, vec3(0.0f)));
+  if (projection == 5u) uv = node_mirror_ball(node_normalize(v, vec3(0.0f)));
+  return node_texture(NODE_HOST texture_index, uv);
+}
+
+// The entry of a table at 0 ... 1, or between two; `first` is its first constant.
+NODE_FUNCTION vec4 node_table(NODE_HOST_PARAMETER bool stepped, int first, float x) {
+  float place = clamp(x, 0.0f, 1.0f) * float(kNodeTableSize - 1);
+  int entry = min(int(place), kNodeTableSize - 2);
+  if (stepped) return node_constant(NODE_HOST first + int(place));
+  return mix(node_constant(NODE_HOST first + entry), node_constant(NODE_HOST first + entry + 1),
+             place - float(entry));
+}
+
+// Each component of `v` through the table of that component; the constant before the table says which
+// range it covers, and whether the curves go on straight beyond (z).
+NODE_FUNCTION vec4 node_curves(NODE_HOST_PARAMETER int first, vec3 v) {
+  vec4 range = node_constant(NODE_HOST first);
+  float scale = node_divide(1.0f, range.y - range.x);
+  vec3 place = (v - vec3(range.x)) * scale;
+  vec4 x = node_table(NODE_HOST false, first + 1, place.x);
+  vec4 y = node_table(NODE_HOST false, first + 1, place.y);
+  vec4 z = node_table(NODE_HOST false, first + 1, place.z);
+  vec3 result = vec3(x.x, y.y, z.z);
+  if (range.z == 0.0f) return node_vector(result);
+  int last = first + kNodeTableSize;
+  float steps = float(kNodeTableSize - 1);
+  vec4 begin = (node_constant(NODE_HOST first + 2) - node_constant(NODE_HOST first + 1)) * steps;
+  vec4 end = (node_constant(NODE_HOST last) - node_constant(NODE_HOST last - 1)) * steps;
+  vec3 below = min(place, vec3(0.0f)), above = max(place - vec3(1.0f), vec3(0.0f));
+  return node_vector(result + below * node_xyz(begin) + above * node_xyz(end));
+}
+
+// `space`: the mode of kNodeNormalMap.
+NODE_FUNCTION vec3 node_normal_map(NODE_HOST_PARAMETER uint space, vec3 color, float strength,
+                                   NodePoint p) {
+  vec3 painted = color * 2.0f - vec3(1.0f);
+  float side = p.backfacing ? -1.0f : 1.0f;
+  if (space == 0u) {
+    vec3 own = side * p.normal;
+    vec3 along = vec3(p.tangent.x, p.tangent.y, p.tangent.z);
+    vec3 tangent = node_normalize(along - own * dot(own, along), vec3(0.0f));
+    if (p.tangent.w == 0.0f || tangent == vec3(0.0f)) return p.normal;
+    vec3 bitangent = cross(own, tangent) * p.tangent.w;
+    float height = mix(1.0f, painted.z, clamp(strength, 0.0f, 1.0f));
+    return side * node_normalize(painted.x * strength * tangent +
+                                     painted.y * strength * bitangent + height * own,
+                                 own);
+  }
+  if (space >= 3u) painted = vec3(painted.x, -painted.y, -painted.z);  // as old Blenders baked them
+  vec3 n = painted;
+  if (space == 1u || space == 3u) n = node_transform(NODE_HOST painted, 2u, 1u, 0u);
+  n = side * node_normalize(n, side * p.normal);
+  return node_normalize(p.normal + (n - p.normal) * max(strength, 0.0f), p.normal);
+}
+
+// What an instruction makes of its operands `v`.
+NODE_FUNCTION vec4 node_execute(NODE_HOST_PARAMETER uint op, uint all_modes, int data,
+                                vec4 v[kNodeInputs], NodePoint p) {
+  uint mode = all_modes;
+  switch (op) {
+    case kNodeInput: return node_input(mode, data, p);
+    case kNodeAttribute: return node_attribute(NODE_HOST data, int(mode));
+    case kNodeImage: return node_image(NODE_HOST mode, data, node_xyz(v[0]), v[1].x, p);
+    case kNodeComponent:
+      return node_scalar(mode == 0u   ? v[0].x
+                         : mode == 1u ? v[0].y
+                         : mode == 2u ? v[0].z
+                                      : v[0].w);
+    case kNodeScalar:
+      return node_scalar(mode == 0u ? 0.2126f * v[0].x + 0.7152f * v[0].y + 0.0722f * v[0].z
+                                    : (v[0].x + v[0].y + v[0].z) * (1.0f / 3.0f));
+    case kNodeCombine: return vec4(v[0].x, v[1].x, v[2].x, 1.0f);
+    case kNodeMath: {
+      uint operation = node_digit(mode, 41u);
+      float value = node_math(operation, v[0].x, v[1].x, v[2].x);
+      return node_scalar(mode == 0u ? value : clamp(value, 0.0f, 1.0f));
+    }
+    case kNodeVectorMath:
+      return node_vector_math(mode, node_xyz(v[0]), node_xyz(v[1]), node_xyz(v[2]), v[3].x);
+    case kNodeMix: {
+      vec4 factor = mode == 0u ? v[0] : clamp(v[0], vec4(0.0f), vec4(1.0f));
+      return (vec4(1.0f) - factor) * v[1] + factor * v[2];
+    }
+    case kNodeTable:
+      if (mode == 2u) return node_curves(NODE_HOST data, node_xyz(v[0]));
+      return node_table(NODE_HOST mode == 1u, data, v[0].x);
+    case kNodeMapping:
+      return node_vector(node_mapping(mode, node_xyz(v[0]), node_xyz(v[1]), node_xyz(v[2]),
+                                      node_xyz(v[3])));
+    case kNodeVectorRotate: {
+      uint type = node_digit(mode, 5u);
+      return node_vector(node_vector_rotate(type, mode != 0u, node_xyz(v[0]), node_xyz(v[1]),
+                                            node_xyz(v[2]), v[3].x, node_xyz(v[4])));
+    }
+    case kNodeVectorTransform: {
+      uint type = node_digit(mode, 3u);
+      uint from = node_digit(mode, 3u);
+      return node_vector(node_transform(NODE_HOST node_xyz(v[0]), type, from, mode));
+    }
+    case kNodeNormalMap:
+      return node_vector(node_normal_map(NODE_HOST mode, node_xyz(v[0]), v[1].x, p));
+    case kNodeBump:
+      return node_vector(node_bump(node_xyz(v[3]), p.step_x, p.step_y, v[0].x, v[1].x, v[2].x,
+                                   v[4].x, mode == 0u ? v[5].x : -v[5].x));
+    case kNodeFresnel: {
+      float ior = max(v[0].x, 1e-5f);
+      return node_scalar(
+          node_fresnel(dot(p.incoming, node_xyz(v[1])), p.backfacing ? 1.0f / ior : ior));
+    }
+    case kNodeLayerWeight: {
+      float cosine = dot(p.incoming, node_xyz(v[1]));
+      if (mode != 0u) return node_scalar(node_facing(cosine, v[0].x));
+      float eta = max(1.0f - v[0].x, 1e-5f);
+      return node_scalar(node_fresnel(cosine, p.backfacing ? eta : 1.0f / eta));
+    }
+    default: return vec4(0.0f);
+  }
+}
