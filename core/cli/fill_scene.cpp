@@ -116,7 +116,7 @@ struct Used {
       }
     }
     for (size_t i = 0; i < materials.size(); ++i) {
-      if (materials[i]) add_textures(scene.materials[i].values);
+      if (materials[i]) add_textures(scene.materials[i]);
     }
     for (const int index : scene.world.textures) {
       if (index != kNoIndex) textures[index] = true;
@@ -126,17 +126,29 @@ struct Used {
   std::vector<bool> meshes, materials, textures;
 
  private:
-  void add_textures(const KestrelMaterial& m) {
+  void add_textures(const MaterialDescription& material) {
+    const KestrelMaterial& m = material.values;
     for (const uint64_t id : {m.emission_texture, m.ambient_texture, m.diffuse_texture,
                               m.specular_texture, m.normal_texture, m.optical_texture}) {
       if (id) textures[id - 1] = true;
     }
+    if (!material.program) return;
+    for (const uint64_t id : material.program->textures) textures[id - 1] = true;
   }
 };
 
 void set_material(KestrelScene scene, uint64_t id, const MaterialDescription& description) {
   KestrelMaterial material = description.values;
   material.name = description.name.c_str();
+  KestrelNodeProgram program{};
+  if (description.program) {
+    const ProgramDescription& p = *description.program;
+    program = {p.steps.data(),         p.steps.size(),      p.constants.data(),
+               p.constants.size() / 4, p.textures.data(),   p.textures.size(),
+               p.attributes.data(),    p.attributes.size(), {}};
+    std::copy(p.outputs.begin(), p.outputs.end(), program.outputs);
+    material.program = &program;
+  }
   check(kestrelSetMaterial(scene, id, &material));
 }
 

@@ -92,7 +92,10 @@ TextureDescription parse_texture(const JsonNode& node, Names& names, int index,
                                  const SceneBuffer& buffer);
 /// The element's material; textures that hold no colour are marked as linear, unless they say so.
 MaterialDescription parse_material(const JsonNode& node, const Names& textures, Names& names,
-                                   int index, std::vector<bool>& holds_data);
+                                   int index, std::vector<bool>& holds_data,
+                                   const SceneBuffer& buffer);
+ProgramDescription parse_program(const JsonNode& node, const Names& textures,
+                                 const SceneBuffer& buffer);
 MeshDescription parse_mesh(const JsonNode& node, Names& names, int index, ModelCache& models,
                            const SceneBuffer& buffer);
 /// Appends the element's objects (many for instances and imported models) to the scene.

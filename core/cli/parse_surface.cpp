@@ -145,7 +145,8 @@ TextureDescription parse_texture(const JsonNode& node, Names& names, int index,
 }
 
 MaterialDescription parse_material(const JsonNode& node, const Names& textures, Names& names,
-                                   int index, std::vector<bool>& holds_data) {
+                                   int index, std::vector<bool>& holds_data,
+                                   const SceneBuffer& buffer) {
   node.expect_keys({"name",
                     "label",
                     "emission",
@@ -174,7 +175,8 @@ MaterialDescription parse_material(const JsonNode& node, const Names& textures, 
                     "tangent_map",
                     "emission_attribute",
                     "ambient_attribute",
-                    "diffuse_attribute"});
+                    "diffuse_attribute",
+                    "program"});
   MaterialDescription material;
   material.name = parse_label(node, names.add(node, index));
   KestrelMaterial& m = material.values;
@@ -191,6 +193,7 @@ MaterialDescription parse_material(const JsonNode& node, const Names& textures, 
   if (const auto n = node.find("alpha_cutoff")) m.alpha_cutoff = n->number(0, 1);
   if (const auto n = node.find("pass_index")) m.pass_index = n->integer(INT_MIN, INT_MAX);
   parse_attribute_use(node, m);
+  if (const auto n = node.find("program")) material.program = parse_program(*n, textures, buffer);
   return material;
 }
 

@@ -3,6 +3,7 @@
 // it has reached the library yet.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -66,9 +67,19 @@ struct TextureDescription {
 };
 
 /// `values.name` is unused; texture ids are index + 1, 0 for none.
+/// As KestrelNodeProgram.
+struct ProgramDescription {
+  std::vector<KestrelNodeInstruction> steps;
+  std::vector<float> constants;
+  std::vector<uint64_t> textures;  // index + 1
+  std::vector<uint64_t> attributes;
+  std::array<int32_t, KESTREL_NODE_OUTPUTS> outputs{};
+};
+
 struct MaterialDescription {
   std::string name;
   KestrelMaterial values;
+  std::optional<ProgramDescription> program;
 };
 
 /// `values.name` is unused.

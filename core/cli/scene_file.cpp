@@ -83,7 +83,8 @@ void parse_surfaces(const JsonNode& root, ParseContext& context) {
   std::vector<bool> holds_data(scene.textures.size(), false);
   for (const JsonNode& node : list(root, "materials")) {
     scene.materials.push_back(parse_material(node, context.textures, context.materials,
-                                             static_cast<int>(scene.materials.size()), holds_data));
+                                             static_cast<int>(scene.materials.size()), holds_data,
+                                             context.buffer));
   }
   for (size_t i = 0; i < holds_data.size(); ++i) {
     if (holds_data[i] && !says_srgb[i]) scene.textures[i].srgb = false;

@@ -111,13 +111,13 @@ void denoising_albedo(const PassSource& from, size_t i, float* out) {
     const Material& material = from.inputs.scene.materials[from.gbuffer.material[i]];
     const vec3& optical = from.gbuffer.optical[i];
     const BlendWeights w = blend_weights(optical.x, 1.0f - optical.z);
-    albedo = w.surface * glm::max(vec3(from.gbuffer.diffuse[i]), from.gbuffer.ambient[i]) +
-             w.reflection * (from.gbuffer.reflection_color.empty()
-                                 ? material.reflection_color
-                                 : from.gbuffer.reflection_color[i]) +
-             w.refraction * (from.gbuffer.transmission_color.empty()
-                                 ? material.transmission_color
-                                 : from.gbuffer.transmission_color[i]);
+    albedo =
+        w.surface * glm::max(vec3(from.gbuffer.diffuse[i]), from.gbuffer.ambient[i]) +
+        w.reflection * (from.gbuffer.reflection_color.empty() ? material.reflection_color
+                                                              : from.gbuffer.reflection_color[i]) +
+        w.refraction * (from.gbuffer.transmission_color.empty()
+                            ? material.transmission_color
+                            : from.gbuffer.transmission_color[i]);
   }
   store(glm::clamp(albedo, 0.0f, 1.0f), out);
 }

@@ -121,8 +121,8 @@ bool NodeProgram::may_be_lit(int output) const {
 void check_program(NodeProgram& program, const std::string& material) {
   const Checker check(program, material);
   if (program.instructions.size() > kMaxInstructions) {
-    check.refuse("there are {} instructions; at most {} are supported",
-                 program.instructions.size(), kMaxInstructions);
+    check.refuse("there are {} instructions; at most {} are supported", program.instructions.size(),
+                 kMaxInstructions);
   }
   for (size_t i = 0; i < program.instructions.size(); ++i) check.instruction(i);
   for (int output = 0; output < nodes::kNodeOutputs; ++output) {
@@ -133,8 +133,8 @@ void check_program(NodeProgram& program, const std::string& material) {
       check.refuse("a constant is not finite");
     }
   }
-  program.coverage = needed_for(
-      program, {nodes::kNodeAlpha, nodes::kNodeTransmission, nodes::kNodeDiffuse});
+  program.coverage =
+      needed_for(program, {nodes::kNodeAlpha, nodes::kNodeTransmission, nodes::kNodeDiffuse});
   program.reads_tangent =
       std::any_of(program.instructions.begin(), program.instructions.end(), reads_tangent);
 }

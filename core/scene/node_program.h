@@ -18,10 +18,10 @@ struct NodeProgram {
   std::vector<nodes::NodeInstruction> instructions;
   std::vector<vec4> constants;
   std::vector<uint64_t> texture_ids;
-  std::vector<uint64_t> attributes;  // of the mesh; 0: its own UVs
+  std::vector<uint64_t> attributes;              // of the mesh; 0: its own UVs
   std::array<int, nodes::kNodeOutputs> outputs;  // operands, or kNodeUnset
 
-  std::vector<int> textures;                      // by texture_ids: in Scene::textures
+  std::vector<int> textures;                     // by texture_ids: in Scene::textures
   std::vector<nodes::NodeInstruction> coverage;  // those that decide what light gets through
   bool reads_tangent = false;
 

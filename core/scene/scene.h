@@ -213,7 +213,7 @@ struct Object {
   std::shared_ptr<const ObjectMotion> motion;  // null: stands still
   std::shared_ptr<const std::vector<mat4x3>> motion_matrices;  // what `motion` was made from
   int pass_index = 0;                                          // for compositing
-  std::string asset;  // what it is a part of; its own name where it is none
+  std::string asset;    // what it is a part of; its own name where it is none
   float random = 0.0f;  // 0…1, another one for every object
 };
 

@@ -14,6 +14,7 @@
 #include "base/whole_file.h"
 #include "scene/array_file.h"
 #include "scene/scene_file_words.h"
+#include "shading/node_table.h"
 
 namespace kestrel {
 namespace {
@@ -360,6 +361,34 @@ class SceneWriter {
     out["alpha_cutoff"] = number(m.alpha_cutoff);
     out["pass_index"] = m.pass_index;
     add_attribute_ids(m, out);
+    if (m.program) out["program"] = program_element(*m.program);
+    return out;
+  }
+
+  Json program_element(const NodeProgram& program) {
+    Json steps = Json::array();
+    for (const nodes::NodeInstruction& step : program.instructions) {
+      const NodeOp& op = node_table()[step.op];
+      Json modes = Json::array();
+      uint32_t mode = step.mode;
+      for (const auto& digit : op.modes) {
+        modes.push_back(digit[mode % digit.size()]);
+        mode /= static_cast<uint32_t>(digit.size());
+      }
+      Json element = {op.name, modes, step.result, step.data};
+      for (size_t i = 0; i < op.operands.size(); ++i) element.push_back(step.operands[i]);
+      steps.push_back(std::move(element));
+    }
+    Json out = {{"steps", std::move(steps)}, {"constants", arrays_.add(program.constants)}};
+    Json textures = Json::array();
+    for (const int index : program.textures) textures.push_back(texture_name(index));
+    out["textures"] = std::move(textures);
+    out["attributes"] = program.attributes;
+    Json outputs = Json::object();
+    for (int i = 0; i < nodes::kNodeOutputs; ++i) {
+      if (program.computes(i)) outputs[std::string(node_outputs()[i])] = program.outputs[i];
+    }
+    out["outputs"] = std::move(outputs);
     return out;
   }
 

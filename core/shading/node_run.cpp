@@ -48,15 +48,17 @@ vec4 node_attribute(const Host& host, int index, int place) {
   return uvs.empty() ? vec4(0.0f) : vec4(at_corners(uvs, host, place), 0.0f, 1.0f);
 }
 
-vec4 node_constant(const Host& host, int index) { return host.program.constants[index]; }
+vec4 node_constant(const Host& host, int index) {
+  return host.program.constants[index];
+}
 
 enum Space : uint { kWorld, kObject, kCamera };
 enum Transformed : uint { kVector, kPoint, kDirection };
 
 vec3 to_world(const Host& host, const vec3& v, uint type, uint space) {
   if (space == kWorld) return v;
-  const mat4x3& m = space == kObject ? host.object.world_from_object
-                                     : host.scene.camera.world_from_camera;
+  const mat4x3& m =
+      space == kObject ? host.object.world_from_object : host.scene.camera.world_from_camera;
   const vec3 seen = space == kCamera ? vec3(v.x, v.y, -v.z) : v;
   if (type == kPoint) return m * vec4(seen, 1.0f);
   if (type == kDirection && space == kObject) {
@@ -67,8 +69,8 @@ vec3 to_world(const Host& host, const vec3& v, uint type, uint space) {
 
 vec3 from_world(const Host& host, const vec3& v, uint type, uint space) {
   if (space == kWorld) return v;
-  const mat4x3& m = space == kObject ? host.object.world_from_object
-                                     : host.scene.camera.world_from_camera;
+  const mat4x3& m =
+      space == kObject ? host.object.world_from_object : host.scene.camera.world_from_camera;
   const vec3 from_origin = type == kPoint ? v - m[3] : v;
   if (space == kCamera) {
     const vec3 seen = glm::transpose(mat3(m)) * from_origin;
@@ -115,8 +117,7 @@ vec4 tangent_of(const Host& host, const Material& material) {
   const std::vector<vec4>& tangents = host.mesh.tangents_of(material.tangent_map);
   if (tangents.empty()) return vec4(0.0f);
   const vec4 t = at_corners(tangents, host, 0);
-  const float side =
-      (t.w < 0.0f ? -1.0f : 1.0f) * (host.object.flips_orientation ? -1.0f : 1.0f);
+  const float side = (t.w < 0.0f ? -1.0f : 1.0f) * (host.object.flips_orientation ? -1.0f : 1.0f);
   return {mat3(host.object.world_from_object) * vec3(t), side};
 }
 
@@ -168,8 +169,10 @@ NodeValues run(const Scene& scene, const Material& material,
                const BarePoint& bare, const Look& look) {
   const Object& object = scene.objects[hit.object];
   const NodeProgram& program = *material.program;
-  Host host{scene, program, object, *scene.meshes[object.mesh], hit,
-            glm::inverse(mat3(object.world_from_object)), {}};
+  Host host{scene,  program,
+            object, *scene.meshes[object.mesh],
+            hit,    glm::inverse(mat3(object.world_from_object)),
+            {}};
   const NodePoint point = node_point(host, material, bare, look);
   vec4 registers[kNodeRegisters] = {};
   const auto value = [&](int operand) -> const vec4& {

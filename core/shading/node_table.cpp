@@ -19,12 +19,12 @@ const Names kNoYes = {"NO", "YES"};
 std::vector<NodeOp> make_table() {
   return {
       {"input",
-       {{"POSITION",        "OBJECT",         "GENERATED",     "CAMERA",       "WINDOW",
-         "REFLECTION",      "NORMAL",         "OBJECT_NORMAL", "TRUE_NORMAL",  "TANGENT",
-         "INCOMING",        "PARAMETRIC",     "BACKFACING",    "OBJECT_LOCATION",
-         "OBJECT_INDEX",    "OBJECT_RANDOM",  "MATERIAL_INDEX", "IS_CAMERA",   "IS_SHADOW",
-         "IS_REFLECTION",   "IS_TRANSMISSION", "RAY_LENGTH",   "RAY_DEPTH",    "VIEW_VECTOR",
-         "VIEW_DEPTH",      "VIEW_DISTANCE"}},
+       {{"POSITION",        "OBJECT",         "GENERATED",     "CAMERA",          "WINDOW",
+         "REFLECTION",      "NORMAL",         "OBJECT_NORMAL", "TRUE_NORMAL",     "TANGENT",
+         "INCOMING",        "PARAMETRIC",     "BACKFACING",    "OBJECT_LOCATION", "OBJECT_INDEX",
+         "OBJECT_RANDOM",   "MATERIAL_INDEX", "IS_CAMERA",     "IS_SHADOW",       "IS_REFLECTION",
+         "IS_TRANSMISSION", "RAY_LENGTH",     "RAY_DEPTH",     "VIEW_VECTOR",     "VIEW_DEPTH",
+         "VIEW_DISTANCE"}},
        {},
        NodeData::place},
       {"attribute", {{"HERE", "BESIDE_X", "BESIDE_Y"}}, {}, NodeData::attribute},
@@ -37,29 +37,29 @@ std::vector<NodeOp> make_table() {
       {"combine", {}, {"x", "y", "z"}},
       {"color_space", {{"RGB_TO_HSV", "HSV_TO_RGB", "RGB_TO_HSL", "HSL_TO_RGB"}}, {"color"}},
       {"math",
-       {{"ADD",        "SUBTRACT",     "MULTIPLY",       "DIVIDE",     "MULTIPLY_ADD", "POWER",
-         "LOGARITHM",  "SQRT",         "INVERSE_SQRT",   "ABSOLUTE",   "EXPONENT",     "MINIMUM",
-         "MAXIMUM",    "LESS_THAN",    "GREATER_THAN",   "SIGN",       "COMPARE",      "SMOOTH_MIN",
-         "SMOOTH_MAX", "ROUND",        "FLOOR",          "CEIL",       "TRUNC",        "FRACT",
-         "MODULO",     "FLOORED_MODULO", "WRAP",         "SNAP",       "PINGPONG",     "SINE",
-         "COSINE",     "TANGENT",      "ARCSINE",        "ARCCOSINE",  "ARCTANGENT",   "ARCTAN2",
-         "SINH",       "COSH",         "TANH",           "RADIANS",    "DEGREES"},
+       {{"ADD",        "SUBTRACT",       "MULTIPLY",     "DIVIDE",    "MULTIPLY_ADD", "POWER",
+         "LOGARITHM",  "SQRT",           "INVERSE_SQRT", "ABSOLUTE",  "EXPONENT",     "MINIMUM",
+         "MAXIMUM",    "LESS_THAN",      "GREATER_THAN", "SIGN",      "COMPARE",      "SMOOTH_MIN",
+         "SMOOTH_MAX", "ROUND",          "FLOOR",        "CEIL",      "TRUNC",        "FRACT",
+         "MODULO",     "FLOORED_MODULO", "WRAP",         "SNAP",      "PINGPONG",     "SINE",
+         "COSINE",     "TANGENT",        "ARCSINE",      "ARCCOSINE", "ARCTANGENT",   "ARCTAN2",
+         "SINH",       "COSH",           "TANH",         "RADIANS",   "DEGREES"},
         kNoYes /* clamp */},
        {"a", "b", "c"}},
       {"vector_math",
-       {{"ADD",         "SUBTRACT",  "MULTIPLY", "DIVIDE",  "MULTIPLY_ADD", "CROSS_PRODUCT",
-         "PROJECT",     "REFLECT",   "REFRACT",  "FACEFORWARD", "DOT_PRODUCT", "DISTANCE",
-         "LENGTH",      "SCALE",     "NORMALIZE", "ABSOLUTE", "MINIMUM",    "MAXIMUM",
-         "FLOOR",       "CEIL",      "FRACTION", "MODULO",  "WRAP",         "SNAP",
-         "SINE",        "COSINE",    "TANGENT",  "POWER",   "SIGN"}},
+       {{"ADD",     "SUBTRACT", "MULTIPLY",  "DIVIDE",      "MULTIPLY_ADD", "CROSS_PRODUCT",
+         "PROJECT", "REFLECT",  "REFRACT",   "FACEFORWARD", "DOT_PRODUCT",  "DISTANCE",
+         "LENGTH",  "SCALE",    "NORMALIZE", "ABSOLUTE",    "MINIMUM",      "MAXIMUM",
+         "FLOOR",   "CEIL",     "FRACTION",  "MODULO",      "WRAP",         "SNAP",
+         "SINE",    "COSINE",   "TANGENT",   "POWER",       "SIGN"}},
        {"a", "b", "c", "scale"}},
       {"mix", {kNoYes /* clamp the factor */}, {"factor", "a", "b"}},
       {"mix_color",
-       {{"MIX",        "DARKEN",     "MULTIPLY",   "BURN",       "LIGHTEN",    "SCREEN",
-         "DODGE",      "ADD",        "OVERLAY",    "SOFT_LIGHT", "LINEAR_LIGHT", "DIFFERENCE",
-         "EXCLUSION",  "SUBTRACT",   "DIVIDE",     "HUE",        "SATURATION", "COLOR",
-         "VALUE"},
-        kNoYes /* clamp the factor */, kNoYes /* clamp the result */},
+       {{"MIX", "DARKEN", "MULTIPLY", "BURN", "LIGHTEN", "SCREEN", "DODGE", "ADD", "OVERLAY",
+         "SOFT_LIGHT", "LINEAR_LIGHT", "DIFFERENCE", "EXCLUSION", "SUBTRACT", "DIVIDE", "HUE",
+         "SATURATION", "COLOR", "VALUE"},
+        kNoYes /* clamp the factor */,
+        kNoYes /* clamp the result */},
        {"factor", "a", "b"}},
       {"table", {{"LINEAR", "CONSTANT", "CURVES"}}, {"x"}, NodeData::table},
       {"hue_saturation", {}, {"color", "hue", "saturation", "value"}},
@@ -74,7 +74,9 @@ std::vector<NodeOp> make_table() {
        {{"AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"}, kNoYes /* invert */},
        {"vector", "center", "axis", "angle", "rotation"}},
       {"vector_transform",
-       {{"VECTOR", "POINT", "NORMAL"}, {"WORLD", "OBJECT", "CAMERA"}, {"WORLD", "OBJECT", "CAMERA"}},
+       {{"VECTOR", "POINT", "NORMAL"},
+        {"WORLD", "OBJECT", "CAMERA"},
+        {"WORLD", "OBJECT", "CAMERA"}},
        {"vector"}},
       {"normal_map",
        {{"TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD"}},
@@ -121,7 +123,7 @@ std::vector<NodeOp> make_table() {
 }
 
 constexpr std::array<std::string_view, nodes::kNodeOutputs> kOutputs = {
-    "emission", "ambient",    "diffuse",      "alpha", "specular",
+    "emission",  "ambient",    "diffuse",      "alpha", "specular",
     "roughness", "reflection", "transmission", "ior",   "normal"};
 
 const char* name_of(NodeData data) {
@@ -155,7 +157,9 @@ std::span<const NodeOp> node_table() {
   return table;
 }
 
-std::span<const std::string_view> node_outputs() { return kOutputs; }
+std::span<const std::string_view> node_outputs() {
+  return kOutputs;
+}
 
 std::string node_table_json() {
   nlohmann::ordered_json ops = nlohmann::json::array();

@@ -151,7 +151,9 @@ BarePoint bare_point(const Object& object, const Mesh& mesh, const SurfaceHit& h
 }
 
 /// Shares of light by colour; below 0 there is none.
-vec3 share(const vec4& value) { return glm::max(vec3(value), 0.0f); }
+vec3 share(const vec4& value) {
+  return glm::max(vec3(value), 0.0f);
+}
 
 /// A highlight of the roughness of a microfacet surface: Blinn-Phong's of equal width and height.
 vec4 highlight(const vec3& f0, float roughness) {
@@ -295,8 +297,8 @@ float evaluate_alpha(const Scene& scene, const SurfaceHit& hit, const mat3& norm
   return textured(scene, material.diffuse, material.diffuse_texture, uv).w;
 }
 
-vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit,
-                         const mat3& normal_from_object, const Look& look) {
+vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit, const mat3& normal_from_object,
+                         const Look& look) {
   const Object& object = scene.objects[hit.object];
   const Material& material = scene.materials[material_of(scene, object, hit.triangle)];
   if (!material.casts_shadow) return vec3(1.0f);

@@ -44,11 +44,10 @@ inline constexpr size_t kMaxHits = 8;
 
 /// Interpolates and evaluates the materials of up to kMaxHits hits. Tangent space is listing 2's,
 /// with an orthogonal tangent. `normal_from_object`: the inverse transpose of every object's
-/// matrix; `looks`: how each hit came about. Several hits together take less time than one after the
-/// other: their geometry and texels come from memory side by side.
+/// matrix; `looks`: how each hit came about. Several hits together take less time than one after
+/// the other: their geometry and texels come from memory side by side.
 void evaluate_surfaces(const Scene& scene, std::span<const mat3> normal_from_object,
-                       std::span<const SurfaceHit> hits, std::span<const Look> looks,
-                       Surface* out);
+                       std::span<const SurfaceHit> hits, std::span<const Look> looks, Surface* out);
 
 /// Diffuse alpha at a hit, before the alpha mode: colour times texture, or the program's.
 float evaluate_alpha(const Scene& scene, const SurfaceHit& hit, const mat3& normal_from_object,
@@ -56,7 +55,7 @@ float evaluate_alpha(const Scene& scene, const SurfaceHit& hit, const mat3& norm
 
 /// Light that gets past a surface on its way to another (listing 8b): what alpha leaves uncovered,
 /// and of the rest transparency * (1 - diffuse), tinted, or what the program lets through.
-vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit,
-                         const mat3& normal_from_object, const Look& look);
+vec3 shadow_transmission(const Scene& scene, const SurfaceHit& hit, const mat3& normal_from_object,
+                         const Look& look);
 
 }  // namespace kestrel

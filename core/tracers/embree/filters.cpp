@@ -51,9 +51,8 @@ void attenuate_shadow(const RTCFilterFunctionNArguments* args) {
     ShadowState& state = states[RTCRayN_id(args->ray, args->N, i)];
     const SurfaceHit hit = hit_of(args, i);
     if (state.enter(hit.object, RTCRayN_tfar(args->ray, args->N, i))) {
-      state.transmitted *=
-          shadow_transmission(scene, hit, rt_scene_of(args).normal_from_object()[hit.object],
-                              look_of(args, i));
+      state.transmitted *= shadow_transmission(
+          scene, hit, rt_scene_of(args).normal_from_object()[hit.object], look_of(args, i));
     }
     if (max_component(state.transmitted) > 0.0f) args->valid[i] = 0;
   }

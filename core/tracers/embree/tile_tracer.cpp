@@ -94,17 +94,17 @@ void TileTracer::gather_pixel(uint32_t i) {
   const auto width = static_cast<uint32_t>(g.width);
   const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
   Pixel p{i, unit, {}, camera_.to_viewer(g.position[i], x, y)};
-  p.surface = {g.position[i],
-               g.normal[i],
-               g.normal_geometric[i],
-               g.emission[i],
-               g.ambient[i],
-               g.diffuse[i],
-               g.specular[i],
-               g.optical[i],
-               g.reflection_color.empty() ? material.reflection_color : g.reflection_color[i],
-               g.transmission_color.empty() ? material.transmission_color
-                                            : g.transmission_color[i]};
+  p.surface = {
+      g.position[i],
+      g.normal[i],
+      g.normal_geometric[i],
+      g.emission[i],
+      g.ambient[i],
+      g.diffuse[i],
+      g.specular[i],
+      g.optical[i],
+      g.reflection_color.empty() ? material.reflection_color : g.reflection_color[i],
+      g.transmission_color.empty() ? material.transmission_color : g.transmission_color[i]};
   p.entering = glm::dot(p.surface.normal_geometric, p.to_viewer) >= 0.0f;
   face_viewer(p.surface, p.to_viewer);
   p.reflectivity = effects & kReflections ? p.surface.optical.x : 0.0f;
