@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The words of the node files' common subset in GLSL; core/shading/glsl.h has them in C++.
+#define NODE_FUNCTION
+#define OUT(type) out type
+#define INOUT(type) inout type
