@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "shading/node_maths.h"
+#include "scene/node_types.h"
 
 namespace kestrel {
 

@@ -85,7 +85,7 @@ vec3 node_transform(const Host& host, const vec3& v, uint type, uint from, uint 
   return type == kDirection ? node_normalize(moved, vec3(0.0f)) : moved;
 }
 
-#include "../../shaders/nodes/execute_noncolor.glsl"
+#include "../../shaders/nodes/execute.glsl"
 
 /// Two unit vectors that span the plane of a unit normal.
 void span_plane(const vec3& normal, vec3& x, vec3& y) {

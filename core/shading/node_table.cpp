@@ -4,7 +4,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "shading/node_maths.h"
+#include "scene/node_types.h"
 
 namespace kestrel {
 namespace {
@@ -12,6 +12,7 @@ namespace {
 using Names = std::vector<std::string_view>;
 
 const Names kDimensions = {"1D", "2D", "3D", "4D"};
+const Names kBlenders = {"3", "4", "5"};  // major version whose results are wanted
 const Names kNoYes = {"NO", "YES"};
 
 /// In the order of the constants in shaders/nodes/program.glsl; modes in that of the switches and
@@ -91,10 +92,10 @@ std::vector<NodeOp> make_table() {
        {{"LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL"}},
        {"vector"}},
       {"magic",
-       {{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10"}},
+       {{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10"}, kBlenders},
        {"vector", "scale", "distortion"}},
       {"wave",
-       {{"BANDS", "RINGS"}, {"X", "Y", "Z", "DIAGONAL"}, {"SIN", "SAW", "TRI"}},
+       {{"BANDS", "RINGS"}, {"X", "Y", "Z", "DIAGONAL"}, {"SIN", "SAW", "TRI"}, kBlenders},
        {"vector", "scale", "distortion", "detail", "detail_scale", "detail_roughness", "phase"}},
       {"brick",  // the result's X is the tint, its Y the mortar's share
        {},
@@ -105,7 +106,8 @@ std::vector<NodeOp> make_table() {
        {kDimensions,
         {"FBM", "MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HETERO_TERRAIN"},
         kNoYes /* normalize */,
-        {"FAC", "COLOR"}},
+        {"FAC", "COLOR"},
+        kBlenders},
        {"vector", "w", "scale", "detail", "roughness", "lacunarity", "distortion", "offset_gain"}},
       {"musgrave",
        {kDimensions,
@@ -116,7 +118,8 @@ std::vector<NodeOp> make_table() {
         {"EUCLIDEAN", "MANHATTAN", "CHEBYCHEV", "MINKOWSKI"},
         {"F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"},
         kNoYes /* normalize */,
-        {"DISTANCE", "COLOR", "POSITION", "W"}},
+        {"DISTANCE", "COLOR", "POSITION", "W"},
+        kBlenders},
        {"vector", "w", "scale", "smoothness", "exponent", "randomness",
         "detail_roughness_lacunarity"}},
   };

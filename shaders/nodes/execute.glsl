@@ -15,6 +15,9 @@ NODE_FUNCTION uint node_digit(INOUT(uint) mode, uint count) {
   return digit;
 }
 
+// Which Blender's textures are meant, by a mode that holds nothing else.
+NODE_FUNCTION int node_blender(uint mode) { return 3 + int(mode); }
+
 // `place`: 0 here, 1 and 2 a step beside (for bumps).
 NODE_FUNCTION vec4 node_input(uint what, int place, NodePoint p) {
   vec3 beside = place == 1 ? p.step_x : place == 2 ? p.step_y : vec3(0.0f);
@@ -201,6 +204,81 @@ NODE_FUNCTION vec4 node_execute(NODE_HOST_PARAMETER uint op, uint all_modes, int
       if (mode != 0u) return node_scalar(node_facing(cosine, v[0].x));
       float eta = max(1.0f - v[0].x, 1e-5f);
       return node_scalar(node_fresnel(cosine, p.backfacing ? eta : 1.0f / eta));
+    }
+    case kNodeChecker: {
+      float first = node_checker(node_xyz(v[0]), v[3].x);
+      return mode != 0u ? node_scalar(first) : (first != 0.0f ? v[1] : v[2]);
+    }
+    case kNodeGradient: return node_scalar(node_gradient(mode, node_xyz(v[0])));
+    case kNodeMagic: {
+      int depth = int(node_digit(mode, 11u));
+      return node_vector(
+          node_magic(depth, node_xyz(v[0]), v[1].x, v[2].x, node_blender(mode)));
+    }
+    case kNodeWave: {
+      uint type = node_digit(mode, 2u), direction = node_digit(mode, 4u);
+      uint profile = node_digit(mode, 3u);
+      return node_scalar(node_wave(type, direction, profile, node_xyz(v[0]), v[1].x, v[2].x,
+                                   v[3].x, v[4].x, v[5].x, v[6].x, node_blender(mode)));
+    }
+    case kNodeBrick: {
+      vec4 rows = node_constant(NODE_HOST data);
+      vec2 brick = node_brick(node_xyz(v[0]), v[1].x, v[2].x, v[3].x, v[4].x, v[5].x, v[6].x,
+                              rows.x, int(rows.y), rows.z, int(rows.w));
+      return vec4(brick.x, brick.y, 0.0f, 1.0f);
+    }
+    case kNodeWhiteNoise: {
+      int dimensions = 1 + int(node_digit(mode, 4u));
+      vec3 noise = node_white_noise(dimensions,
+                                    texture_point(dimensions, node_xyz(v[0]), v[1].x, 1.0f));
+      return mode == 0u ? node_scalar(noise.x) : node_vector(noise);
+    }
+    case kNodeNoise: {
+      int dimensions = 1 + int(node_digit(mode, 4u));
+      NoiseInputs inputs;
+      inputs.type = node_digit(mode, 5u);
+      inputs.normalize = node_digit(mode, 2u) != 0u;
+      bool colored = node_digit(mode, 2u) != 0u;
+      inputs.detail = v[3].x;
+      inputs.roughness = v[4].x;
+      inputs.lacunarity = v[5].x;
+      inputs.distortion = v[6].x;
+      inputs.offset = v[7].x;
+      inputs.gain = v[7].y;
+      vec3 noise = node_noise(dimensions,
+                              texture_point(dimensions, node_xyz(v[0]), v[1].x, v[2].x), inputs,
+                              colored ? 3 : 1, node_blender(mode));
+      return colored ? node_vector(noise) : node_scalar(noise.x);
+    }
+    case kNodeMusgrave: {
+      int dimensions = 1 + int(node_digit(mode, 4u));
+      return node_scalar(node_musgrave(dimensions,
+                                       texture_point(dimensions, node_xyz(v[0]), v[1].x, v[2].x),
+                                       mode, v[3].x, v[4].x, v[5].x, v[6].x, v[7].x));
+    }
+    case kNodeVoronoi: {
+      int dimensions = 1 + int(node_digit(mode, 4u));
+      VoronoiInputs inputs;
+      inputs.metric = node_digit(mode, 4u);
+      inputs.feature = node_digit(mode, 5u);
+      inputs.normalize = node_digit(mode, 2u) != 0u;
+      uint wanted = node_digit(mode, 4u);
+      inputs.scale = v[2].x;
+      inputs.smoothness = v[3].x;
+      inputs.exponent = v[4].x;
+      inputs.randomness = v[5].x;
+      inputs.detail = v[6].x;
+      inputs.roughness = v[6].y;
+      inputs.lacunarity = v[6].z;
+      VoronoiFeature found = node_voronoi(
+          dimensions, texture_point(dimensions, node_xyz(v[0]), v[1].x, v[2].x), inputs,
+          node_blender(mode));
+      if (wanted == 0u) return node_scalar(found.distance);
+      if (wanted == 1u) return node_vector(found.color);
+      if (wanted == 2u) {
+        return vec4(found.position.x, found.position.y, found.position.z, 1.0f);
+      }
+      return node_scalar(dimensions == 1 ? found.position.x : found.position.w);
     }
     default: return vec4(0.0f);
   }

@@ -3,3 +3,5 @@
 #define NODE_FUNCTION
 #define OUT(type) out type
 #define INOUT(type) inout type
+#define NODE_HOST_PARAMETER
+#define NODE_HOST
