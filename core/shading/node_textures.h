@@ -11,4 +11,20 @@ namespace kestrel::nodes {
 
 #include "../../shaders/nodes/color.glsl"
 
+#include "../../shaders/nodes/noise.glsl"
+
+#include "../../shaders/nodes/voronoi.glsl"
+
+#include "../../shaders/nodes/white_noise.glsl"
+
+#include "../../shaders/nodes/wave.glsl"
+
+#include "../../shaders/nodes/magic.glsl"
+
+#include "../../shaders/nodes/gradient.glsl"
+
+#include "../../shaders/nodes/checker.glsl"
+
+#include "../../shaders/nodes/brick.glsl"
+
 }  // namespace kestrel::nodes

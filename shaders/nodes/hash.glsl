@@ -7,13 +7,15 @@ NODE_FUNCTION int whole_number(float x) {
   return -2147483647 - 1;
 }
 
-// The remainder of x / y with the sign of x, as C's fmod: exact for |x / y| < 4096, y not 0.
+// The remainder of x / y with the sign of x, as C's fmod, for y > 0; exact while |x / y| < 4096.
 NODE_FUNCTION float signed_remainder(float x, float y) {
   float ratio = x / y;
   float quotient = ratio < 0.0f ? ceil(ratio) : floor(ratio);
   // y in two parts, of which the first times the quotient needs no rounding.
   float coarse = uintBitsToFloat(floatBitsToUint(y) & 0xfffff000u);
-  return (x - quotient * coarse) - quotient * (y - coarse);
+  float rest = (x - quotient * coarse) - quotient * (y - coarse);
+  if (x < 0.0f) return rest > 0.0f ? rest - y : rest;
+  return rest < 0.0f ? rest + y : rest;  // where the quotient was rounded up
 }
 
 // ---- Bob Jenkins' lookup3 ----------------------------------------------------------------------
