@@ -3,6 +3,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "shading/node_textures.h"
@@ -46,5 +49,31 @@ inline constexpr std::array kNodeFunctions = {
     NodeFunction{"blackbody", "at_0 by_x"},
     NodeFunction{"wavelength", "at_0 by_x"},
 };
+
+struct NodeCall {
+  int function;  // place in kNodeFunctions
+  float parameters[kParameters] = {};
+
+  vec4 operator()(const vec4& at) { return evaluate(function, parameters, at); }
+};
+
+/// The call that a line such as "magic 2 5 1 3" stands for, or nothing where name or number of
+/// parameters are wrong.
+inline std::optional<NodeCall> parse_call(const std::string& line) {
+  std::istringstream words(line);
+  std::string name;
+  words >> name;
+  for (size_t i = 0; i < kNodeFunctions.size(); ++i) {
+    if (kNodeFunctions[i].name != name) continue;
+    NodeCall call{static_cast<int>(i)};
+    std::istringstream named{std::string(kNodeFunctions[i].parameters)};
+    size_t count = 0;
+    for (std::string parameter; named >> parameter;) {
+      if (!(words >> call.parameters[count++])) return std::nullopt;
+    }
+    return (words >> name) ? std::nullopt : std::optional(call);
+  }
+  return std::nullopt;
+}
 
 }  // namespace kestrel::nodes
