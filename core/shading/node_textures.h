@@ -5,6 +5,9 @@
 
 #include "shading/glsl.h"
 
+/// For functions whose loops count to a constant only where they are inlined.
+#define NODE_INLINE [[gnu::always_inline]] inline
+
 namespace kestrel::nodes {
 
 #include "../../shaders/nodes/hash.glsl"

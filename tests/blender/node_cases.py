@@ -34,6 +34,7 @@ class Case:
     channels: str = "xyz"  # of the function's result; one is compared with all of the node's
     linked: str = "Vector"
     place: tuple = COORDINATES
+    constant: bool = False  # the same value everywhere
 
     @property
     def name(self):
@@ -156,7 +157,7 @@ def plain_textures():
         for scale, distortion in ((1.3, 1), (0.7, 2.5)):
             yield Case("ShaderNodeTexMagic", ("magic", depth, scale, distortion, BLENDER),
                        {"turbulence_depth": depth}, {"Scale": scale, "Distortion": distortion})
-    yield Case("ShaderNodeTexMagic", ("magic", 2, 3, 0, BLENDER), {"turbulence_depth": 2},
+    yield Case("ShaderNodeTexMagic", ("magic", 0, 3, 0, BLENDER), {"turbulence_depth": 0},
                {"Scale": 3, "Distortion": 0})
     for index, kind in enumerate(GRADIENTS):
         yield Case("ShaderNodeTexGradient", ("gradient", index), {"gradient_type": kind},
@@ -169,7 +170,7 @@ def plain_textures():
 
 def bricks():
     names = ("Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")
-    for values, offset, squash in (((5, 0.02, 0.1, 0, 0.5, 0.25), (0.5, 2), (1, 2)),
+    for values, offset, squash in (((4.7, 0.04, 0.1, 0, 0.5, 0.25), (0.5, 2), (1, 2)),
                                    ((3, 0.06, 0.7, -0.3, 0.6, 0.3), (0.3, 3), (1.6, 2)),
                                    ((4, 0.03, 0, 0.4, 0.4, 0.2), (0.8, 1), (0.5, 4))):
         for output, channels in (("Color", "x"), ("Fac", "y")):
@@ -207,7 +208,8 @@ def colors():
     yield Case("ShaderNodeBrightContrast", ("bright_contrast", 0.1, 0.7), {},
                {"Bright": 0.1, "Contrast": 0.7}, **options)
     for gamma in (0, 0.45, 2.2):
-        yield Case("ShaderNodeGamma", ("gamma", gamma), {}, {"Gamma": gamma}, **options)
+        yield Case("ShaderNodeGamma", ("gamma", gamma), {}, {"Gamma": gamma},
+                   constant=gamma == 0, **options)
     yield Case("ShaderNodeInvert", ("invert", 0.8), {}, {"Fac": 0.8}, **options)
     yield Case("ShaderNodeRGBToBW", ("luminance",), channels="x", **options)
     yield Case("ShaderNodeBlackbody", ("blackbody", 0, 1), linked="Temperature",
