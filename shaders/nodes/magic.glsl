@@ -5,13 +5,13 @@
 NODE_FUNCTION vec3 node_magic(int depth, vec3 vector, float scale, float distortion, int blender) {
   // Brought into one turn of the angle before the scale counts, from Blender 5 on after it.
   float before = blender >= 5 ? scale : 1.0f;
-  float after = blender >= 5 ? 5.0f : 5.0f * scale;
+  float after = blender >= 5 ? 1.0f : scale;
   float px = signed_remainder(vector.x * before, 6.28318530718f);
   float py = signed_remainder(vector.y * before, 6.28318530718f);
   float pz = signed_remainder(vector.z * before, 6.28318530718f);
-  float x = sin((px + py + pz) * after);
-  float y = cos((-px + py - pz) * after);
-  float z = -cos((-px - py + pz) * after);
+  float x = sin((px + py + pz) * 5.0f * after);
+  float y = cos((-px + py - pz) * 5.0f * after);
+  float z = -cos((-px - py + pz) * 5.0f * after);
   if (depth > 0) {
     x *= distortion;
     y *= distortion;

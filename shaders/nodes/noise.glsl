@@ -33,12 +33,12 @@ NODE_FUNCTION vec4 texture_point(int dimensions, vec3 vector, float w, float sca
 
 // ---- one octave --------------------------------------------------------------------------------
 
-NODE_FUNCTION float negative_where(uint bits, uint bit, float x) {
+NODE_INLINE float negative_where(uint bits, uint bit, float x) {
   return (bits & bit) != 0u ? -x : x;
 }
 
 // The dot product of `p` and the gradient that a corner's hash picks.
-NODE_FUNCTION float noise_gradient(int dimensions, uint hash, vec4 p) {
+NODE_INLINE float noise_gradient(int dimensions, uint hash, vec4 p) {
   if (dimensions == 1) return negative_where(hash, 8u, 1.0f + float(hash & 7u)) * p.x;
   if (dimensions == 2) {
     bool first = (hash & 7u) < 4u;
@@ -56,7 +56,7 @@ NODE_FUNCTION float noise_gradient(int dimensions, uint hash, vec4 p) {
          negative_where(hash, 4u, h < 8u ? p.z : p.w);
 }
 
-NODE_FUNCTION uint noise_hash(int dimensions, uint x, uint y, uint z, uint w) {
+NODE_INLINE uint noise_hash(int dimensions, uint x, uint y, uint z, uint w) {
   if (dimensions == 1) return hash_uint(x);
   if (dimensions == 2) return hash_uint2(x, y);
   if (dimensions == 3) return hash_uint3(x, y, z);
@@ -69,7 +69,7 @@ NODE_FUNCTION float noise_fade(float t) {
 }
 
 // Perlin's noise, not scaled: the gradients at the corners of the cell, each with its weight.
-NODE_FUNCTION float perlin_noise(int dimensions, vec4 p) {
+NODE_INLINE float perlin_noise(int dimensions, vec4 p) {
   vec4 cell = floor(p);
   vec4 within = p - cell;
   uint x = uint(whole_number(cell.x));
@@ -97,6 +97,7 @@ NODE_FUNCTION float perlin_noise(int dimensions, vec4 p) {
 
 // Coordinates repeat after 100000, where floats become coarse, and are never whole beyond 1000000.
 NODE_FUNCTION float noise_wrap(float x) {
+  if (abs(x) < 100000.0f) return x;
   return signed_remainder(x, 100000.0f) + (abs(x) >= 1000000.0f ? 0.5f : 0.0f);
 }
 

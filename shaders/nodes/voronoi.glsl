@@ -18,7 +18,7 @@ const uint kVoronoiNSphereRadius = 4u;
 struct VoronoiInputs {
   uint feature;      // kVoronoiF1 …
   uint metric;       // kVoronoiEuclidean …, of F1, F2 and smooth F1 in more than one dimension
-  bool normalize;    // distances so that they end at 1
+  bool normalize;    // distances so that they end at about 1
   float scale;       // the one that the point was made with
   float detail;      // octaves above the first, held in 0 to 15
   float roughness;   // held in 0 to 1
