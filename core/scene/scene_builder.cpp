@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "scene/motion.h"
 #include "scene/tangents.h"
+#include "shading/node_textures.h"
 
 namespace kestrel {
 namespace {
@@ -68,6 +69,20 @@ std::shared_ptr<const Mesh> with_tangents(const Mesh& mesh, uint64_t uv_map) {
     break;
   }
   return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// What Cycles gives an object of this name as its random number, 0…1; instances, which share their
+/// name, get numbers of their own.
+float random_of(const ObjectInput& object, uint64_t id) {
+  nodes::uint sum = 0;
+  for (const char c : object.name) sum = sum * 37 + static_cast<unsigned char>(c);
+  const bool instance = object.unit != object.name;
+  const nodes::uint hash = nodes::hash_uint2(sum, instance ? static_cast<nodes::uint>(id) : 0);
+  return static_cast<float>(hash) * (1.0f / 4294967295.0f);
 }
 
 }  // namespace
@@ -357,6 +372,7 @@ void SceneBuilder::add_object(Assembly& out, uint64_t id, const ObjectEntry& ent
   object.name = input.name;
   object.asset = input.asset;
   object.pass_index = input.pass_index;
+  object.random = random_of(input, id);
   object.world_from_object = input.world_from_object;
   object.flips_orientation = glm::determinant(mat3(input.world_from_object)) < 0.0f;
   object.hidden_from = input.hidden_from;
