@@ -350,6 +350,11 @@ bool Renderer::Impl::use_raster() {
   const Primary primary = scene->settings.primary;
   if (primary == Primary::rays) return false;
   if (primary == Primary::automatic && !gl::hardware_available()) return false;
+  if (scene->has_programs) {
+    log::warning_once(
+        "Materials with node programs are not rasterised yet: rays are used instead.");
+    return false;
+  }
   try {
     return primary == Primary::raster || !device->gl()->info().software;
   } catch (const Error& error) {
