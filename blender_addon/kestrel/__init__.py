@@ -25,11 +25,11 @@ def _forget_modules():
 
 _forget_modules()
 
-from . import (engine, log, operators, preferences, properties, rivals, translations,  # noqa: E402
-               ui)
+from . import (engine, export_scene, log, operators, preferences, properties,  # noqa: E402
+               rivals, translations, ui)
 from .native import loader  # noqa: E402
 
-MODULES = (log, translations, properties, operators, preferences, engine, ui)
+MODULES = (log, translations, properties, operators, export_scene, preferences, engine, ui)
 IDLE_MODULES = (rivals,)  # of one that stands back for another Kestrel
 
 _registered = []

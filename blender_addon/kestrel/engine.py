@@ -11,7 +11,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import final_render, log, passes, session, viewport, write_lock
+from . import export_scene, final_render, log, passes, session, viewport, write_lock
 from .native import capi
 
 
@@ -44,12 +44,17 @@ class KestrelRenderEngine(bpy.types.RenderEngine):
     # ---- what Blender calls ----
 
     def update(self, data, depsgraph):
+        export = export_scene.under_way(self)
+        if export is not None:
+            export.run(self, depsgraph, final_render.camera_of, final_render.BreakCheck(self))
+            return
         if self._final is None:
             self._final = final_render.FinalRender()
         self._final.update(self, depsgraph)
 
     def render(self, depsgraph):
-        self._final.render(self, depsgraph)
+        if export_scene.under_way(self) is None:
+            self._final.render(self, depsgraph)
 
     def update_render_passes(self, scene=None, renderlayer=None):
         passes.register(self, scene, renderlayer)

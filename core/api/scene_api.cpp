@@ -5,6 +5,7 @@
 #include "api/convert.h"
 #include "api/errors.h"
 #include "api/handles.h"
+#include "scene/scene_writer.h"
 
 using namespace kestrel;
 using namespace kestrel::api;
@@ -249,5 +250,22 @@ void kestrelCancelCommit(KestrelScene scene) {
   guarded([&] {
     const auto state = scenes().get(scene);
     if (state->committing) state->commit_cancelled = true;
+  });
+}
+
+KestrelError kestrelWriteScene(KestrelScene scene, const char* path, int width, int height) {
+  return guarded([&] {
+    const auto state = scenes().get(scene);
+    const std::string target = require(path, "path");
+    std::shared_ptr<const Scene> published;
+    {
+      const std::lock_guard lock(state->published_mutex);
+      published = state->published;
+    }
+    if (!published) {
+      fail(ErrorCode::invalid_operation,
+           "The scene was never committed. Call kestrelCommitScene() before writing it.");
+    }
+    write_scene(*published, target, width, height);
   });
 }

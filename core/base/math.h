@@ -2,6 +2,7 @@
 // The vector types of the whole core. World space is Blender's: right-handed, Z up, metres.
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
 
 namespace kestrel {
@@ -22,6 +23,13 @@ inline constexpr float kPi = 3.14159265358979323846f;
 /// Relative luminance of a linear Rec. 709 colour.
 inline float luminance(const vec3& rgb) {
   return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+/// `v` as a unit vector. One that is unit but for rounding stays as it is: what was normalised once
+/// keeps its bits. Not for zero.
+inline vec3 normalized(const vec3& v) {
+  const float squared = glm::dot(v, v);
+  return std::abs(squared - 1.0f) <= 1e-6f ? v : v / std::sqrt(squared);
 }
 
 inline float max_component(const vec3& v) {

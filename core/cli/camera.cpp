@@ -21,6 +21,10 @@ KestrelCamera with_window(const CameraDescription& camera, const mat4x3& world_f
   out.right = center.x + half.x;
   out.bottom = center.y - half.y;
   out.top = center.y + half.y;
+  if (camera.window) {
+    const vec4& window = *camera.window;
+    out.left = window.x, out.right = window.y, out.bottom = window.z, out.top = window.w;
+  }
   out.near_clip = camera.near_clip;
   out.far_clip = camera.far_clip;
   out.aperture_radius = camera.aperture_radius;

@@ -14,8 +14,8 @@ inline constexpr int kStatusInterrupted = 130;
 
 struct RenderOptions {
   std::string scene;
-  std::string output;  // .exr or .png; #### becomes the frame's number, from 1
-  std::string size = "1280x720";
+  std::string output;                 // .exr or .png; #### becomes the frame's number, from 1
+  std::string size;                   // empty: the scene's, else 1280x720
   std::vector<std::string> settings;  // NAME=VALUE
   std::string passes = "Combined";
   std::string stats;  // empty: none

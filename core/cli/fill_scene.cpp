@@ -21,8 +21,10 @@ void set_texture(KestrelScene scene, uint64_t id, const TextureDescription& text
     check(kestrelSetTextureMemory(scene, id, bytes->data.data(), bytes->data.size(), &options));
   } else {
     const auto& pixels = std::get<TexturePixels>(texture.source);
-    check(kestrelSetTexturePixelsFloat(scene, id, pixels.width, pixels.height, pixels.rgba.data(),
-                                       &options));
+    check(pixels.rgba.empty() ? kestrelSetTexturePixels8(scene, id, pixels.width, pixels.height,
+                                                         pixels.bytes.data(), &options)
+                              : kestrelSetTexturePixelsFloat(scene, id, pixels.width, pixels.height,
+                                                             pixels.rgba.data(), &options));
   }
 }
 
@@ -32,7 +34,8 @@ const float* floats(const std::vector<T>& values) {
 }
 
 void set_mesh(KestrelScene scene, uint64_t id, const MeshDescription& mesh) {
-  static_assert(sizeof(vec3) == 12 && sizeof(vec2) == 8 && sizeof(uvec3) == 12);
+  static_assert(sizeof(mat4x3) == 48 && sizeof(vec4) == 16 && sizeof(vec3) == 12 &&
+                sizeof(vec2) == 8 && sizeof(uvec3) == 12);
   KestrelMesh m{};
   m.name = mesh.name.c_str();
   m.vertex_count = mesh.positions.size();
@@ -41,7 +44,23 @@ void set_mesh(KestrelScene scene, uint64_t id, const MeshDescription& mesh) {
   m.triangles = &mesh.triangles[0][0];
   m.corner_normals = floats(mesh.corner_normals);
   m.corner_uvs = floats(mesh.corner_uvs);
+  m.corner_tangents = floats(mesh.corner_tangents);
   m.triangle_materials = mesh.triangle_slots.empty() ? nullptr : mesh.triangle_slots.data();
+  std::vector<vec3> positions, normals;  // shape after shape
+  for (const ShapeDescription& shape : mesh.motion) {
+    positions.insert(positions.end(), shape.positions.begin(), shape.positions.end());
+    normals.insert(normals.end(), shape.corner_normals.begin(), shape.corner_normals.end());
+  }
+  m.motion_count = mesh.motion.size();
+  m.motion_positions = floats(positions);
+  m.motion_corner_normals = floats(normals);
+  m.uv_map = mesh.uv_map;
+  std::vector<KestrelMeshAttribute> attributes;
+  for (const AttributeDescription& attribute : mesh.attributes) {
+    attributes.push_back({attribute.id, attribute.channels, attribute.values.data()});
+  }
+  m.attribute_count = attributes.size();
+  m.attributes = attributes.data();
   check(kestrelSetMesh(scene, id, &m));
 }
 
@@ -62,6 +81,9 @@ void set_object(KestrelScene scene, uint64_t id, const ObjectDescription& object
   o.pass_index = object.pass_index;
   o.asset = object.asset.empty() ? nullptr : object.asset.c_str();
   check(kestrelSetObject(scene, id, &o));
+  if (!object.motion.empty()) {
+    check(kestrelSetObjectMotion(scene, id, &object.motion[0][0][0], object.motion.size()));
+  }
   for (const auto& [name, value] : object.settings) {
     check(kestrelSetObjectSetting(scene, id, name.c_str(), value.c_str()));
   }
@@ -148,6 +170,11 @@ void fill_scene(const SceneDescription& description, int width, int height, Kest
   }
   const KestrelCamera camera = camera_for(description.camera, width, height);
   check(kestrelSetCamera(scene, &camera));
+  std::vector<KestrelCamera> states;
+  for (const CameraDescription& state : description.camera_motion) {
+    states.push_back(camera_for(state, width, height));
+  }
+  if (!states.empty()) check(kestrelSetCameraMotion(scene, states.data(), states.size()));
   const Used used(description);
   set_used(scene, description.textures, used.textures, set_texture);
   set_used(scene, description.materials, used.materials, set_material);

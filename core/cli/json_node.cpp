@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <numeric>
 #include <set>
+
+#include "scene/scene_file_words.h"
 
 namespace kestrel::cli {
 namespace {
 
 constexpr int kMaximumDepth = 64;
-constexpr size_t kMaximumText = 4096;  // bytes of a name or a path
 
 /// Levenshtein distance.
 size_t edit_distance(std::string_view a, std::string_view b) {
@@ -164,6 +166,16 @@ int JsonNode::integer(int minimum, int maximum) const {
   return static_cast<int>(v);
 }
 
+uint64_t JsonNode::whole() const {
+  if (!value_->is_number_unsigned()) fail_type("a whole number from 0 to 2^64 - 1");
+  return value_->get<uint64_t>();
+}
+
+float JsonNode::radians(double minimum, double maximum) const {
+  number(minimum, maximum);
+  return static_cast<float>(glm::radians(value_->get<double>()));
+}
+
 bool JsonNode::boolean() const {
   if (!value_->is_boolean()) fail_type("true or false");
   return value_->get<bool>();
@@ -173,7 +185,7 @@ std::string JsonNode::text() const {
   if (!value_->is_string()) fail_type("a text");
   const auto& text = value_->get_ref<const std::string&>();
   if (text.empty()) fail("expected a text that is not empty");
-  if (text.size() > kMaximumText) fail("longer than {} bytes", kMaximumText);
+  if (text.size() > kMaximumSceneText) fail("longer than {} bytes", kMaximumSceneText);
   for (const unsigned char c : text) {
     if (c < 0x20) fail("a text must not hold control characters");
   }

@@ -66,6 +66,10 @@ class JsonNode {
   /// Finite and within [minimum, maximum].
   float number(double minimum, double maximum) const;
   int integer(int minimum, int maximum) const;
+  /// A whole number from 0 to 2^64 - 1.
+  uint64_t whole() const;
+  /// An angle given in degrees within [minimum, maximum], in radians.
+  float radians(double minimum, double maximum) const;
   bool boolean() const;
   /// Not empty, no control characters.
   std::string text() const;

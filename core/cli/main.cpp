@@ -15,7 +15,8 @@ void add_render(CLI::App& app, kestrel::cli::RenderOptions& options) {
                    "The picture: .exr (linear, one layer a pass) or .png (sRGB); #### becomes the "
                    "frame's number")
       ->required();
-  render->add_option("--size", options.size, "Width and height in pixels")->capture_default_str();
+  render->add_option("--size", options.size,
+                     "Width and height in pixels; where left out, the scene's own, or 1280x720");
   render
       ->add_option("--set", options.settings,
                    "A setting, NAME=VALUE; may be repeated (kestrel info --settings lists them)")

@@ -10,6 +10,7 @@
 
 #include "cli/json_node.h"
 #include "cli/model_file.h"
+#include "cli/scene_buffer.h"
 #include "cli/scene_description.h"
 
 namespace kestrel::cli {
@@ -18,6 +19,7 @@ namespace kestrel::cli {
 inline constexpr size_t kMaximumItems = 1'000'000;
 inline constexpr double kMaximumLength = 1e9;  // metres
 inline constexpr double kMaximumRadiance = 1e9;
+inline constexpr size_t kMaximumSteps = 129;  // of a motion
 
 /// What has a unique name and is referred to by it.
 class Names {
@@ -56,6 +58,7 @@ struct ParseContext {
   Names materials{"material"};
   Names meshes{"mesh"};
   ModelCache models;
+  SceneBuffer buffer;
 };
 
 // ---- values -----------------------------------------------------------------------------------
@@ -63,6 +66,8 @@ struct ParseContext {
 /// Three numbers, or `fallback` where `key` is missing.
 vec3 parse_vec3(const JsonNode& parent, const std::string& key, const vec3& fallback,
                 double minimum = -kMaximumLength, double maximum = kMaximumLength);
+/// What an element of this name is called outside the scene file: its "label", else its name.
+std::string parse_label(const JsonNode& parent, const std::string& name);
 UpAxis parse_up(const JsonNode& parent);
 /// "matrix", or "position", "rotation" (degrees, XYZ) and "scale"; identity where there is none.
 mat4x3 parse_transform(const JsonNode& parent);
@@ -80,14 +85,16 @@ std::vector<std::string> setting_names(const std::string& scope);
 // ---- elements ---------------------------------------------------------------------------------
 
 CameraDescription parse_camera(const JsonNode& node);
-/// Adds the world's images to the textures.
-WorldDescription parse_world(const JsonNode& node, SceneDescription& scene);
+/// Adds the world's images to the textures, but those that are there already.
+WorldDescription parse_world(const JsonNode& node, const Names& textures, SceneDescription& scene);
 LightDescription parse_light(const JsonNode& node, size_t index);
-TextureDescription parse_texture(const JsonNode& node, Names& names, int index);
+TextureDescription parse_texture(const JsonNode& node, Names& names, int index,
+                                 const SceneBuffer& buffer);
 /// The element's material; textures that hold no colour are marked as linear, unless they say so.
 MaterialDescription parse_material(const JsonNode& node, const Names& textures, Names& names,
                                    int index, std::vector<bool>& holds_data);
-MeshDescription parse_mesh(const JsonNode& node, Names& names, int index, ModelCache& models);
+MeshDescription parse_mesh(const JsonNode& node, Names& names, int index, ModelCache& models,
+                           const SceneBuffer& buffer);
 /// Appends the element's objects (many for instances and imported models) to the scene.
 void parse_object(const JsonNode& node, size_t index, ParseContext& context);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Objects: placed meshes, their instances, and whole models.
 #include <algorithm>
+#include <climits>
 #include <iterator>
 #include <map>
 
 #include "cli/parse.h"
+#include "scene/scene_file_words.h"
 
 namespace kestrel::cli {
 namespace {
@@ -63,7 +65,7 @@ std::vector<mat4x3> parse_placements(const JsonNode& node) {
 /// What compositing tells objects by.
 void parse_identity(const JsonNode& node, ObjectDescription& object) {
   if (const auto n = node.find("asset")) object.asset = n->text();
-  if (const auto n = node.find("pass_index")) object.pass_index = n->integer(0, 1'000'000);
+  if (const auto n = node.find("pass_index")) object.pass_index = n->integer(INT_MIN, INT_MAX);
 }
 
 std::vector<std::string> object_keys(const std::vector<std::string>& own) {
@@ -79,7 +81,7 @@ std::vector<std::string> object_keys(const std::vector<std::string>& own) {
 void parse_visibility(const JsonNode& node, ObjectDescription& object) {
   if (const auto kinds = node.find("hidden_from")) {
     for (const JsonNode& kind : kinds->items(16)) {
-      object.hidden_from |= 1u << kind.choice({"camera", "shadow", "reflection", "refraction"});
+      object.hidden_from |= 1u << kind.choice(kRayWords);
     }
   }
   if (const auto holdout = node.find("holdout")) object.holdout = holdout->boolean();
@@ -272,6 +274,17 @@ void parse_import(const JsonNode& node, const JsonNode& file, ParseContext& cont
 
 // ---- placed meshes -----------------------------------------------------------------------------
 
+/// Matrices at even steps of time.
+std::vector<mat4x3> parse_motion(const JsonNode& node) {
+  std::vector<mat4x3> matrices;
+  const auto motion = node.find("motion");
+  if (!motion) return matrices;
+  if (node.has("instances")) node.fail("has both 'motion' and 'instances'; use one of them");
+  for (const JsonNode& item : motion->items(kMaximumSteps)) matrices.push_back(parse_matrix(item));
+  if (matrices.size() < 2) motion->fail("expected at least 2 matrices");
+  return matrices;
+}
+
 std::vector<int> parse_slots(const JsonNode& node, const Names& materials) {
   const auto one = node.find("material");
   const auto many = node.find("materials");
@@ -294,7 +307,7 @@ void parse_object(const JsonNode& node, size_t index, ParseContext& context) {
     parse_import(node, *file, context);
     return;
   }
-  node.expect_keys(object_keys({"mesh", "material", "materials"}));
+  node.expect_keys(object_keys({"mesh", "material", "materials", "motion"}));
   ObjectDescription object;
   object.mesh = context.meshes.find(node.require("mesh"));
   const auto name = node.find("name");
@@ -305,6 +318,7 @@ void parse_object(const JsonNode& node, size_t index, ParseContext& context) {
   object.materials = parse_slots(node, context.materials);
   object.settings = parse_settings(node, "object");
   parse_visibility(node, object);
+  object.motion = parse_motion(node);
   const std::vector<mat4x3> placements = parse_placements(node);
   expect_room(node, placements.size(), context.scene);
   for (const mat4x3& placement : placements) {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/parse.h"
+#include "scene/scene_file_words.h"
 
 namespace kestrel::cli {
 namespace {
@@ -57,6 +58,11 @@ vec3 parse_vec3(const JsonNode& parent, const std::string& key, const vec3& fall
   return {v[0], v[1], v[2]};
 }
 
+std::string parse_label(const JsonNode& parent, const std::string& name) {
+  const auto label = parent.find("label");
+  return label ? label->text() : name;
+}
+
 UpAxis parse_up(const JsonNode& parent) {
   const auto node = parent.find("up");
   return node && node->choice({"y", "z"}) == 0 ? UpAxis::y : UpAxis::z;
@@ -73,7 +79,7 @@ mat3 rotation_from_degrees(const vec3& degrees) {
 }
 
 mat4x3 parse_matrix(const JsonNode& node) {
-  const std::vector<float> v = node.numbers(12, 12, -kMaximumLength, kMaximumLength);
+  const std::vector<float> v = node.numbers(12, 12, -kMaximumSceneNumber, kMaximumSceneNumber);
   mat4x3 m;
   for (int i = 0; i < 12; ++i) m[i / 3][i % 3] = v[i];
   return m;

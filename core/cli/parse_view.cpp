@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Camera, world and lights.
+#include <climits>
 #include <cmath>
 
 #include "cli/camera.h"
 #include "cli/parse.h"
 #include "cli/scene_data.h"
+#include "scene/scene_file_words.h"
 
 namespace kestrel::cli {
 namespace {
@@ -23,12 +25,21 @@ void parse_field_of_view(const JsonNode& node, CameraDescription& camera) {
     const auto fov = node.find(kKeys[i]);
     if (!fov) continue;
     camera.fit = kFits[i];
-    camera.extent = 2.0f * std::tan(0.5f * glm::radians(fov->number(0.01, 179.0)));
+    camera.extent = 2.0f * std::tan(0.5f * fov->radians(0.01, 179.0));
     ++found;
   }
   if (found != 1) {
     node.fail("expected one of 'fov' (larger side of the picture), 'fov_x' and 'fov_y', degrees");
   }
+}
+
+/// What any picture shows, whatever its size.
+vec4 parse_window(const JsonNode& node, const JsonNode& window) {
+  for (const char* other : {"fov", "fov_x", "fov_y", "scale", "shift_x", "shift_y"}) {
+    if (node.has(other)) node.fail("has both 'window' and '{}'; use one of them", other);
+  }
+  const std::vector<float> v = window.numbers(4, 4, -kMaximumSceneNumber, kMaximumSceneNumber);
+  return {v[0], v[1], v[2], v[3]};
 }
 
 void parse_aperture(const JsonNode& node, CameraDescription& camera) {
@@ -37,15 +48,15 @@ void parse_aperture(const JsonNode& node, CameraDescription& camera) {
     camera.focus_distance = node.require("focus_distance").number(1e-5, kMaximumLength);
   }
   if (const auto v = node.find("aperture_blades")) {
-    camera.aperture_blades = static_cast<int>(v->number(0, 64));
+    camera.aperture_blades = v->integer(INT_MIN, INT_MAX);
   }
   if (const auto v = node.find("aperture_rotation")) {
-    camera.aperture_rotation = glm::radians(v->number(-1e6, 1e6));
+    camera.aperture_rotation = v->radians(-kMaximumLength, kMaximumLength);
   }
   if (const auto v = node.find("aperture_ratio")) camera.aperture_ratio = v->number(0.01, 100.0);
 }
 
-mat4x3 parse_camera_matrix(const JsonNode& node) {
+mat4x3 parse_camera_matrix(const JsonNode& node, bool may_mirror) {
   const mat4x3 m = parse_matrix(node);
   const mat3 linear(m);
   const mat3 product = glm::transpose(linear) * linear;
@@ -56,7 +67,9 @@ mat4x3 parse_camera_matrix(const JsonNode& node) {
           "vectors at right angles");
     }
   }
-  if (glm::determinant(linear) < 0.0f) node.fail("a camera's matrix must not mirror");
+  if (glm::determinant(linear) < 0.0f && !may_mirror) {
+    node.fail("a camera's matrix must not mirror");
+  }
   return m;
 }
 
@@ -65,7 +78,7 @@ mat4x3 parse_camera_placement(const JsonNode& node, const vec3& up) {
     for (const char* other : {"position", "rotation", "look_at"}) {
       if (node.has(other)) node.fail("has both 'matrix' and '{}'; use one of them", other);
     }
-    return parse_camera_matrix(*matrix);
+    return parse_camera_matrix(*matrix, node.has("window"));
   }
   const vec3 position = parse_vec3(node, "position", vec3(0.0f));
   if (const auto target = node.find("look_at")) {
@@ -107,9 +120,11 @@ std::vector<CameraKey> parse_path(const JsonNode& node) {
 
 void parse_mist(const JsonNode& node, WorldDescription& world) {
   node.expect_keys({"start", "depth", "falloff"});
-  if (const auto n = node.find("start")) world.mist_start = n->number(0, kMaximumLength);
-  world.mist_depth = node.require("depth").number(0, kMaximumLength);
-  if (const auto n = node.find("falloff")) world.mist_falloff = n->number(0.1, 10);
+  if (const auto n = node.find("start"))
+    world.mist_start = n->number(-kMaximumLength, kMaximumLength);
+  world.mist_depth = node.require("depth").number(-kMaximumLength, kMaximumLength);
+  if (const auto n = node.find("falloff"))
+    world.mist_falloff = n->number(-kMaximumLength, kMaximumLength);
 }
 
 int add_world_image(const JsonNode& file, KestrelExtension extension, SceneDescription& scene) {
@@ -137,6 +152,15 @@ void parse_cube(const JsonNode& node, const JsonNode& images, WorldDescription& 
   }
 }
 
+void parse_world_textures(const JsonNode& node, const Names& textures, WorldDescription& world) {
+  const std::vector<JsonNode> names = node.items(6);
+  if (names.size() != 1 && names.size() != 6) {
+    node.fail("expected 1 texture, or 6: +X -X +Y -Y +Z -Z");
+  }
+  world.kind = names.size() == 1 ? KESTREL_WORLD_EQUIRECTANGULAR : KESTREL_WORLD_CUBE;
+  for (size_t i = 0; i < names.size(); ++i) world.textures[i] = textures.find(names[i]);
+}
+
 // ---- lights ------------------------------------------------------------------------------------
 
 void parse_direction(const JsonNode& node, KestrelLight& light) {
@@ -150,7 +174,7 @@ void parse_direction(const JsonNode& node, KestrelLight& light) {
     direction = parse_vec3(node, "direction", direction);
     if (glm::length(direction) < 1e-6f) given->fail("must not be zero");
   }
-  direction = glm::normalize(direction);
+  direction = normalized(direction);
   for (int i = 0; i < 3; ++i) light.direction[i] = direction[i];
 }
 
@@ -171,6 +195,7 @@ CameraDescription parse_camera(const JsonNode& node) {
                     "fov_x",
                     "fov_y",
                     "scale",
+                    "window",
                     "shift_x",
                     "shift_y",
                     "position",
@@ -188,9 +213,11 @@ CameraDescription parse_camera(const JsonNode& node) {
                     "aperture_ratio"});
   CameraDescription camera;
   const auto type = node.find("type");
-  const bool orthographic = type && type->choice({"perspective", "orthographic"}) == 1;
-  if (orthographic) {
-    camera.projection = KESTREL_ORTHOGRAPHIC;
+  const bool orthographic = type && type->choice(kProjectionWords) == 1;
+  if (orthographic) camera.projection = KESTREL_ORTHOGRAPHIC;
+  if (const auto window = node.find("window")) {
+    camera.window = parse_window(node, *window);
+  } else if (orthographic) {
     camera.extent = node.require("scale").number(1e-6, kMaximumLength);
     for (const char* key : {"fov", "fov_x", "fov_y"}) {
       if (node.has(key)) node.require(key).fail("an orthographic camera has 'scale' instead");
@@ -202,9 +229,11 @@ CameraDescription parse_camera(const JsonNode& node) {
   if (const auto shift = node.find("shift_x")) camera.shift.x = shift->number(-100, 100);
   if (const auto shift = node.find("shift_y")) camera.shift.y = shift->number(-100, 100);
   if (const auto v = node.find("near")) {
-    camera.near_clip = v->number(orthographic ? -kMaximumLength : 1e-6, kMaximumLength);
+    camera.near_clip = v->number(orthographic ? -kMaximumSceneNumber : 1e-6, kMaximumSceneNumber);
   }
-  if (const auto v = node.find("far")) camera.far_clip = v->number(-kMaximumLength, kMaximumLength);
+  if (const auto v = node.find("far")) {
+    camera.far_clip = v->number(-kMaximumSceneNumber, kMaximumSceneNumber);
+  }
   if (!(camera.near_clip < camera.far_clip)) {
     node.fail("'near' ({}) must be below 'far' ({})", camera.near_clip, camera.far_clip);
   }
@@ -221,14 +250,19 @@ CameraDescription parse_camera(const JsonNode& node) {
   return camera;
 }
 
-WorldDescription parse_world(const JsonNode& node, SceneDescription& scene) {
-  node.expect_keys({"color", "strength", "image", "cube", "flip", "up", "rotation", "mist"});
+WorldDescription parse_world(const JsonNode& node, const Names& textures, SceneDescription& scene) {
+  node.expect_keys({"color", "strength", "image", "cube", "textures", "flip", "up", "rotation",
+                    "matrix", "mist"});
   WorldDescription world;
   if (const auto mist = node.find("mist")) parse_mist(*mist, world);
   const auto image = node.find("image");
   const auto cube = node.find("cube");
-  if (image && cube) node.fail("has both 'image' and 'cube'; use one of them");
-  world.color = parse_vec3(node, "color", vec3(image || cube ? 1.0f : 0.0f), 0, kMaximumRadiance);
+  const auto named = node.find("textures");
+  if (image.has_value() + cube.has_value() + named.has_value() > 1) {
+    node.fail("has several of 'image', 'cube' and 'textures'; use one of them");
+  }
+  const float factor = image || cube || named ? 1.0f : 0.0f;
+  world.color = parse_vec3(node, "color", vec3(factor), -kMaximumRadiance, kMaximumRadiance);
   if (const auto strength = node.find("strength")) {
     world.color *= strength->number(0, kMaximumRadiance);
   }
@@ -238,6 +272,14 @@ WorldDescription parse_world(const JsonNode& node, SceneDescription& scene) {
     world.textures[0] = add_world_image(*image, KESTREL_EXTENSION_REPEAT, scene);
   }
   if (cube) parse_cube(node, *cube, world, scene);
+  if (named) parse_world_textures(*named, textures, world);
+  if (const auto matrix = node.find("matrix")) {
+    for (const char* other : {"up", "rotation"}) {
+      if (node.has(other)) node.fail("has both 'matrix' and '{}'; use one of them", other);
+    }
+    const std::vector<float> v = matrix->numbers(9, 9, -kMaximumLength, kMaximumLength);
+    for (int i = 0; i < 9; ++i) world.map_from_world[i / 3][i % 3] = v[i];
+  }
   if (parse_up(node) == UpAxis::y) world.map_from_world = world.map_from_world * kYUpFromZUp;
   if (const auto angle = node.find("rotation")) {
     // The picture turns anticlockwise seen from above: directions turn the other way.
@@ -248,7 +290,7 @@ WorldDescription parse_world(const JsonNode& node, SceneDescription& scene) {
 }
 
 LightDescription parse_light(const JsonNode& node, size_t index) {
-  const int type = node.require("type").choice({"directional", "point", "spot"});
+  const int type = node.require("type").choice(kLightWords);
   node.expect_keys(light_keys(type));
   LightDescription light;
   KestrelLight& v = light.values;
@@ -270,7 +312,7 @@ LightDescription parse_light(const JsonNode& node, size_t index) {
     if (a == vec3(0.0f)) attenuation->fail("at least one of the three must be above 0");
     for (int i = 0; i < 3; ++i) v.attenuation[i] = a[i];
   }
-  if (const auto n = node.find("spot_angle")) v.spot_angle = glm::radians(n->number(0.01, 180.0));
+  if (const auto n = node.find("spot_angle")) v.spot_angle = n->radians(0.0, 180.0);
   if (const auto n = node.find("blend")) v.spot_blend = n->number(0.0, 1.0);
   if (const auto n = node.find("exponent")) v.spot_exponent = n->number(0.0, 1000.0);
   if (const auto n = node.find("specular_factor")) v.specular_factor = n->number(0.0, 1e6);

@@ -27,6 +27,8 @@ struct Size {
   int height = 0;  // pixels
 };
 
+constexpr Size kDefaultSize{1280, 720};
+
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
@@ -172,13 +174,16 @@ void write_stats(const std::string& path, double load_ms, nlohmann::ordered_json
 }
 
 void render(const RenderOptions& options, Interrupt& interrupt) {
-  const Size size = parse_size(options.size);
+  Size size;
+  if (!options.size.empty()) size = parse_size(options.size);
   expect_output(options.output);
   if (!options.stats.empty()) expect_writable(options.stats, "--stats");
   const auto device = owned<DevicePtr>(kestrelNewDevice());
   const std::vector<Setting> overrides = parse_set_options(options.settings, device.get());
   const auto start = std::chrono::steady_clock::now();
   SceneDescription description = read_scene_file(options.scene);
+  if (!size.width) size = {description.width, description.height};
+  if (!size.width) size = kDefaultSize;
   description.settings.insert(description.settings.end(), overrides.begin(), overrides.end());
   const auto scene = owned<ScenePtr>(kestrelNewScene(device.get()));
   try {

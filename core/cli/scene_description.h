@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +17,19 @@ namespace kestrel::cli {
 
 inline constexpr int kNoIndex = -1;
 
+/// A further UV map, or colours, of a mesh's corners.
+struct AttributeDescription {
+  uint64_t id = 0;
+  int channels = 2;  // 2 or 3
+  std::vector<float> values;
+};
+
+/// A mesh at a moment; as MeshDescription's.
+struct ShapeDescription {
+  std::vector<vec3> positions;
+  std::vector<vec3> corner_normals;
+};
+
 /// Triangles in object space; as KestrelMesh. Corner arrays are empty or have 3 entries a triangle.
 struct MeshDescription {
   std::string name;
@@ -24,6 +38,10 @@ struct MeshDescription {
   std::vector<vec3> corner_normals;
   std::vector<vec2> corner_uvs;
   std::vector<uint32_t> triangle_slots;  // empty: 0
+  std::vector<vec4> corner_tangents;     // xyz, sign of the bitangent
+  uint64_t uv_map = 0;                   // id of corner_uvs
+  std::vector<AttributeDescription> attributes;
+  std::vector<ShapeDescription> motion;  // at even steps of time; empty: keeps its shape
 };
 
 struct TextureFile {
@@ -32,10 +50,11 @@ struct TextureFile {
 struct TextureBytes {  // of an image file, from inside a model file
   std::vector<uint8_t> data;
 };
-struct TexturePixels {  // RGBA, linear, row 0 at the bottom
+struct TexturePixels {  // RGBA, row 0 at the bottom
   int width = 0;
   int height = 0;
-  std::vector<float> rgba;
+  std::vector<float> rgba;     // linear; or, where it is empty:
+  std::vector<uint8_t> bytes;  // linear or sRGB
 };
 
 struct TextureDescription {
@@ -69,6 +88,7 @@ struct ObjectDescription {
   std::vector<std::pair<std::string, std::string>> settings;  // of its unit
   uint32_t hidden_from = 0;                                   // KestrelRays
   bool holdout = false;
+  std::vector<mat4x3> motion;  // world_from_object at even steps of time; empty: stands still
 };
 
 /// Where the camera stands at a moment of its path.
@@ -84,8 +104,9 @@ enum class CameraFit { larger, horizontal, vertical };
 struct CameraDescription {
   KestrelProjection projection = KESTREL_PERSPECTIVE;
   CameraFit fit = CameraFit::larger;
-  float extent = 1.0f;  // of the fitted side: 2 tan(fov / 2), or metres
-  vec2 shift{0.0f};     // in units of the fitted side, as Blender's
+  float extent = 1.0f;         // of the fitted side: 2 tan(fov / 2), or metres
+  vec2 shift{0.0f};            // in units of the fitted side, as Blender's
+  std::optional<vec4> window;  // left, right, bottom, top instead of these three, for any picture
   float near_clip = 0.1f;
   float far_clip = 1000.0f;
   float aperture_radius = 0.0f;  // metres
@@ -109,7 +130,10 @@ struct WorldDescription {
 };
 
 struct SceneDescription {
+  int width = 0;  // pixels of the picture that it was made for; 0: not known
+  int height = 0;
   CameraDescription camera;
+  std::vector<CameraDescription> camera_motion;  // at even steps of time; empty: stands still
   WorldDescription world;
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<TextureDescription> textures;

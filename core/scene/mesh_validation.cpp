@@ -91,7 +91,7 @@ void copy_normals(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs&
       const float squared = glm::dot(given, given);
       const bool sound = squared >= FLT_MIN && squared <= FLT_MAX;
       if (!sound) ++repairs.normals;
-      mesh.corner_normals.push_back(sound ? given / std::sqrt(squared) : kept.face_normals[k]);
+      mesh.corner_normals.push_back(sound ? normalized(given) : kept.face_normals[k]);
     }
   }
 }
@@ -135,6 +135,7 @@ void copy_attributes(const MeshInput& input, const Kept& kept, Mesh& mesh, Repai
 }
 
 void copy_tangents(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs& repairs) {
+  mesh.tangents_given = true;
   mesh.corner_tangents.reserve(3 * kept.triangles.size());
   for (size_t k = 0; k < kept.triangles.size(); ++k) {
     for (size_t corner = 0; corner < 3; ++corner) {
@@ -143,7 +144,7 @@ void copy_tangents(const MeshInput& input, const Kept& kept, Mesh& mesh, Repairs
       const float squared = glm::dot(direction, direction);
       const float sign = given[3] < 0.0f ? -1.0f : 1.0f;
       if (squared >= FLT_MIN && squared <= FLT_MAX && std::isfinite(given[3])) {
-        mesh.corner_tangents.emplace_back(direction / std::sqrt(squared), sign);
+        mesh.corner_tangents.emplace_back(normalized(direction), sign);
         continue;
       }
       ++repairs.tangents;

@@ -46,6 +46,7 @@ struct Mesh {
   std::vector<vec3> corner_normals;          // unit; empty: flat faces
   std::vector<vec2> corner_uvs;              // empty: (0, 0)
   std::vector<vec4> corner_tangents;         // xyz unit, w = sign of the bitangent; empty: none
+  bool tangents_given = false;               // by the host, not made from the UVs
   std::vector<uint32_t> triangle_materials;  // slot of the object; empty: slot 0
   uint64_t uv_map = 0;                       // id of corner_uvs, where they have one
   std::vector<UvMap> more_uv_maps;
@@ -95,6 +96,8 @@ struct Texture {
   int channels8 = 4;                // 3 where every texel is opaque, so that it needs less memory
   std::vector<uint8_t> texels8;     // RGB or RGBA, straight alpha
   std::vector<float> texels_float;  // RGBA, linear
+  std::string path;  // of the file that it was read from; empty: texels were given, or decoded from
+                     // bytes, or stand in for a file that could not be read
 };
 
 enum class AlphaMode : uint8_t {
@@ -164,6 +167,7 @@ struct Material {
 enum class LightType : uint8_t { directional, point, spot };
 
 struct Light {
+  uint64_t id = 0;  // the host's
   std::string name;
   LightType type = LightType::point;
   vec3 color{1.0f};  // radiance that a white Lambert surface facing the light reflects, at 1 m
@@ -171,7 +175,8 @@ struct Light {
   vec3 position{0.0f};
   vec3 direction{0.0f, 0.0f, -1.0f};   // unit, the way the light travels
   vec3 attenuation{0.0f, 0.0f, 1.0f};  // 1 / (x + y d + z d²), d in metres
-  float cos_outer = 0.0f;              // spot: cosine of half the cone's angle
+  float spot_angle = 0.0f;             // spot: full angle of the cone, radians
+  float cos_outer = 0.0f;              // spot: cosine of half of it
   float blend = 0.0f;                  // spot: 0 hard edge … 1 soft all the way
   float exponent = 0.0f;               // spot: power of the cosine to the axis
   float specular_factor = 1.0f;
@@ -189,6 +194,7 @@ enum RayBits : uint8_t {
 
 /// A mesh placed in the world.
 struct Object {
+  uint64_t id = 0;  // the host's
   std::string name;
   int mesh = kNone;
   int unit = kNone;
@@ -198,7 +204,8 @@ struct Object {
   uint8_t hidden_from = 0;                     // RayBits that do not meet it
   bool holdout = false;                        // for camera rays a hole in the picture
   std::shared_ptr<const ObjectMotion> motion;  // null: stands still
-  int pass_index = 0;                          // for compositing
+  std::shared_ptr<const std::vector<mat4x3>> motion_matrices;  // what `motion` was made from
+  int pass_index = 0;                                          // for compositing
   std::string asset;  // what it is a part of; its own name where it is none
 };
 

@@ -146,7 +146,7 @@ void SceneBuilder::set_object(uint64_t id, ObjectInput input) {
   if (ObjectEntry* known = objects_.find(id)) {
     known->input = std::move(input);
   } else {
-    objects_.put(id, {std::move(input), {}, {}});
+    objects_.put(id, {.input = std::move(input)});
   }
 }
 
@@ -171,6 +171,10 @@ void SceneBuilder::set_object_motion(uint64_t id, const std::vector<mat4x3>& wor
     check_matrix(matrix, fmt::format("Object '{}'", object->input.name), "motion");
   }
   object->motion = motion_from(world_from_object);
+  object->motion_matrices.reset();
+  if (object->motion) {
+    object->motion_matrices = std::make_shared<const std::vector<mat4x3>>(world_from_object);
+  }
 }
 
 void SceneBuilder::set_object_setting(uint64_t id, std::string_view name, std::string_view value) {
@@ -325,7 +329,7 @@ int SceneBuilder::mesh_index(Assembly& out, uint64_t id,
   return out.mesh_indices[id] = static_cast<int>(out.scene->meshes.size()) - 1;
 }
 
-void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
+void SceneBuilder::add_object(Assembly& out, uint64_t id, const ObjectEntry& entry) {
   const ObjectInput& input = entry.input;
   const ValidMesh& valid = *meshes_.find(input.mesh);
   if (valid.mesh->triangles.empty()) return;
@@ -336,6 +340,7 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
     return;
   }
   Object object;
+  object.id = id;
   object.name = input.name;
   object.asset = input.asset;
   object.pass_index = input.pass_index;
@@ -344,6 +349,7 @@ void SceneBuilder::add_object(Assembly& out, const ObjectEntry& entry) {
   object.hidden_from = input.hidden_from;
   object.holdout = input.holdout;
   object.motion = entry.motion;
+  object.motion_matrices = entry.motion_matrices;
   out.scene->has_holdouts = out.scene->has_holdouts || input.holdout;
   object.materials.assign(valid.used_slots.back() + 1, 0);
   for (size_t slot = 0; slot < std::min(object.materials.size(), input.materials.size()); ++slot) {
@@ -399,10 +405,15 @@ std::shared_ptr<Scene> SceneBuilder::assemble(const std::function<bool()>& cance
   textures_.decode(textures_in_use(), cancelled);
   Assembly out;
   add_materials(out);
-  for (const auto& [id, light] : lights_) out.scene->lights.push_back(light);
+  for (const auto& [id, light] : lights_) {
+    out.scene->lights.push_back(light);
+    out.scene->lights.back().id = id;
+  }
+  std::sort(out.scene->lights.begin(), out.scene->lights.end(),
+            [](const Light& a, const Light& b) { return a.id < b.id; });
   for (const auto& [id, object] : objects_) {
     if (cancelled && cancelled()) fail(ErrorCode::cancelled, "The commit was cancelled.");
-    add_object(out, object);
+    add_object(out, id, object);
   }
   apply_unit_settings(out);
   add_world(out);

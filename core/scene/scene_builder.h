@@ -51,9 +51,10 @@ class SceneBuilder {
 
   /// Resolves ids, decodes textures in use, makes tangents in use. Throws Error where an id is
   /// unknown or the camera missing; published() then stays. Items are in the order in which their
-  /// ids were first set, units in that of their first rendered object; meshes and textures only
-  /// where something uses them. Unchanged ones keep their pointer from commit to commit. Throws
-  /// Error(cancelled) soon after `cancelled()` says so; it is asked from any thread.
+  /// ids were first set, but lights, whose sum must not depend on it, in that of their ids; units
+  /// in that of their first rendered object; meshes and textures only where something uses them.
+  /// Unchanged ones keep their pointer from commit to commit. Throws Error(cancelled) soon after
+  /// `cancelled()` says so; it is asked from any thread.
   std::shared_ptr<const Scene> commit(const std::function<bool()>& cancelled = {});
 
   /// The last commit's; null before.
@@ -68,6 +69,7 @@ class SceneBuilder {
     ObjectInput input;
     std::map<std::string, ObjectSetting> settings;  // by name
     std::shared_ptr<const ObjectMotion> motion;     // null: stands still
+    std::shared_ptr<const std::vector<mat4x3>> motion_matrices;
   };
 
   /// What a commit works with; indices are those of the new scene.
@@ -77,7 +79,7 @@ class SceneBuilder {
   std::shared_ptr<Scene> assemble(const std::function<bool()>& cancelled);
   std::vector<uint64_t> textures_in_use();
   void add_materials(Assembly& out);
-  void add_object(Assembly& out, const ObjectEntry& entry);
+  void add_object(Assembly& out, uint64_t id, const ObjectEntry& entry);
   void apply_unit_settings(Assembly& out);
   void add_world(Assembly& out);
   int mesh_index(Assembly& out, uint64_t id, const std::vector<uint64_t>& tangent_maps);

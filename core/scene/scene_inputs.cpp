@@ -43,6 +43,15 @@ class Checker {
   std::string item_;
 };
 
+/// Whether the axes are unit and at right angles, but for rounding.
+bool is_rigid(const mat3& m) {
+  const mat3 product = glm::transpose(m) * m;
+  for (int i = 0; i < 9; ++i) {
+    if (std::abs(product[i / 3][i % 3] - (i % 4 == 0 ? 1.0f : 0.0f)) > 2e-6f) return false;
+  }
+  return true;
+}
+
 float column_product(const mat4x3& m) {
   return glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
 }
@@ -105,11 +114,12 @@ Light checked_light(LightInput input) {
     if (!(length > 0.0f && std::isfinite(length))) {
       check.refuse("'direction' has no direction; give it the way the light travels");
     }
-    light.direction /= length;
+    light.direction = normalized(light.direction);
   }
   check.clamp("spot_blend", light.blend, 0.0f, 1.0f);
   check.clamp("spot_exponent", light.exponent, 0.0f, 128.0f);
   check.clamp("spot_angle", input.spot_angle, 0.0f, kPi);
+  light.spot_angle = input.spot_angle;
   light.cos_outer = std::cos(0.5f * input.spot_angle);
   return light;
 }
@@ -144,6 +154,7 @@ Camera checked_camera(Camera camera) {
   }
   mat4x3& m = camera.world_from_camera;
   if (!invertible(m)) check.refuse("'world_from_camera' has no inverse; give it a scale of 1");
+  if (is_rigid(mat3(m))) return camera;
   const bool mirrored = glm::determinant(mat3(m)) < 0.0f;
   const vec3 z = glm::normalize(m[2]);
   const vec3 x = glm::normalize(m[0] - z * glm::dot(z, m[0]));

@@ -23,7 +23,7 @@ struct MaterialInput {
   uint64_t optical_texture = 0;
 };
 
-/// `values.cos_outer` is not read, `values.direction` need not be unit.
+/// `values.spot_angle` and `cos_outer` are not read, `values.direction` need not be unit.
 struct LightInput {
   Light values;
   float spot_angle = 0.0f;  // full angle of the cone, radians
@@ -54,7 +54,7 @@ void check_material(MaterialInput& input);
 /// Returns the light with a unit direction and the cone's cosine.
 Light checked_light(LightInput input);
 void check_matrix(const mat4x3& matrix, const std::string& item, const char* field);
-/// Returns the camera with a matrix free of scale and shear.
+/// Returns the camera with a matrix free of scale and shear; one that is so already stays as it is.
 Camera checked_camera(Camera camera);
 void check_world(const WorldInput& input);
 

@@ -80,6 +80,7 @@ void TextureDecoding::decode() {
     }
     replace_infinite(*texture);
     drop_opaque_alpha(*texture);
+    if (const std::string* path = std::get_if<std::string>(&source_)) texture->path = *path;
   } catch (const std::exception& error) {
     failure_ = error.what();
     images::fill_missing(*texture);

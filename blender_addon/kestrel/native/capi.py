@@ -216,6 +216,7 @@ FUNCTIONS = {
     "kestrelGetSetting": (c_char_p, [c_void_p, c_char_p]),
     "kestrelCommitScene": (c_int, [c_void_p]),
     "kestrelCancelCommit": (None, [c_void_p]),
+    "kestrelWriteScene": (c_int, [c_void_p, c_char_p, c_int, c_int]),
     "kestrelNewRenderer": (c_void_p, [c_void_p]),
     "kestrelRetainRenderer": (None, [c_void_p]),
     "kestrelReleaseRenderer": (None, [c_void_p]),
@@ -472,6 +473,12 @@ class Scene:
         """Let a commit() on another thread raise Cancelled, if there is one."""
         if self._handle is not None:
             self.c.kestrelCancelCommit(self._handle)
+
+    def write(self, path, size=(0, 0)):
+        """Write what was last committed to a scene file, with its arrays in `path`.bin. `size`: of
+        the picture in pixels, for the kestrel command; (0, 0) leaves it open."""
+        self.library.check(self.c.kestrelWriteScene(
+            self.handle, path.encode("utf-8", "surrogateescape"), *size))
 
 
 class Renderer:

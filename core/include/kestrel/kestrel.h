@@ -99,7 +99,7 @@ typedef struct KestrelSceneImpl* KestrelScene;
 
 /* Edits gather until kestrelCommitScene(), which checks the whole and makes it what renderers see.
  * A Set call with a known id replaces that item. Items keep the order in which their ids were
- * first set; units that of their first object. */
+ * first set, but lights are in that of their ids; units in that of their first object. */
 KESTREL_API KestrelScene kestrelNewScene(KestrelDevice device);
 KESTREL_API void kestrelRetainScene(KestrelScene scene);
 KESTREL_API void kestrelReleaseScene(KestrelScene scene);
@@ -370,6 +370,14 @@ KESTREL_API KestrelError kestrelCommitScene(KestrelScene scene);
 /* Makes a running kestrelCommitScene() return KESTREL_ERROR_CANCELLED soon, at the latest when the
  * textures that are just being decoded are done; what was published stays. From any thread. */
 KESTREL_API void kestrelCancelCommit(KestrelScene scene);
+
+/* Writes the scene of the last commit to a scene file that the kestrel command renders: `path`, and
+ * beside it `path`.bin with the arrays. Image files are named, not copied. What the commit renders
+ * is kept to the bit, in order of the ids of objects and lights: the same content gives the same
+ * bytes, however it came about. `width` x `height` is the size at which the command renders it
+ * unless told otherwise; 0 x 0: the file does not say. Each file appears whole or not at all. */
+KESTREL_API KestrelError kestrelWriteScene(KestrelScene scene, const char* path, int width,
+                                           int height);
 
 /* ---- Rendering ------------------------------------------------------------------------------- */
 
