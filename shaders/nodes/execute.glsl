@@ -278,7 +278,7 @@ NODE_FUNCTION vec4 node_execute(NODE_HOST_PARAMETER uint op, uint all_modes, int
       if (wanted == 2u) {
         return vec4(found.position.x, found.position.y, found.position.z, 1.0f);
       }
-      return node_scalar(dimensions == 1 ? found.position.x : found.position.w);
+      return node_scalar(found.position.w);
     }
     default: return vec4(0.0f);
   }

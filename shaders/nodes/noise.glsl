@@ -63,7 +63,7 @@ NODE_INLINE uint noise_hash(int dimensions, uint x, uint y, uint z, uint w) {
   return hash_uint4(x, y, z, w);
 }
 
-// The weight of an octave's step within a cell: 0 to 1 with no slope and curvature at the ends.
+// The weight of a cell's far side: 0 to 1, with neither slope nor curvature at the ends.
 NODE_FUNCTION float noise_fade(float t) {
   return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
 }

@@ -52,8 +52,7 @@ def run_outside(args):
     if args.prepare:
         return prepare(args, blender)
     environment = {**os.environ, **user_folders(args.build), "KESTREL_TEST_BLENDER": blender,
-                   "KESTREL_TEST_COMMAND": str(args.build.resolve() / "kestrel"),
-                   "KESTREL_TEST_BUILD": str(args.build.resolve())}
+                   "KESTREL_TEST_COMMAND": str(args.build.resolve() / "kestrel")}
     return subprocess.run(
         [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "--python",
          str(HERE / "run.py"), "--", *args.names], env=environment, check=False).returncode

@@ -41,7 +41,7 @@ def node_values(function, points):
 
 
 def program():
-    return Path(os.environ["KESTREL_TEST_BUILD"]) / "tests/node_values"
+    return Path(os.environ["KESTREL_TEST_COMMAND"]).parent / "tests/node_values"
 
 
 class NodeMathsTest(SceneTest):
