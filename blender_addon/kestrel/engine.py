@@ -11,7 +11,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import export_scene, final_render, log, passes, session, viewport, write_lock
+from . import export_scene, final_render, log, passes, render_thread, session, viewport, write_lock
 from .native import capi
 
 
@@ -130,6 +130,7 @@ def unregister():
     for name, handler in HANDLERS.items():
         getattr(bpy.app.handlers, name).remove(handler)
     viewport.close_all()
+    render_thread.go_on()
     bpy.utils.unregister_class(KestrelRenderEngine)
     write_lock.unregister()
     session.drop_all()

@@ -14,7 +14,7 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from . import compat, icons, log, passes, session, stamp
+from . import compat, icons, log, passes, render_thread, session, stamp
 from .display import Display, Teller
 from .native import capi
 from .progress import Progress
@@ -260,10 +260,18 @@ def release_sessions():
 
 
 @persistent
+def _render_begins(*_arguments):
+    """Before a picture or an animation, but not an icon."""
+    render_thread.hold_back()
+
+
+@persistent
 def _render_over(scene, *_arguments):
-    """After a picture or, at its end, an animation."""
+    """After a picture or, at its end, an animation; also where it was stopped or went wrong."""
+    render_thread.go_on()
     if not scene.render.use_persistent_data:
         release_sessions()
 
 
-HANDLERS = {"render_complete": _render_over, "render_cancel": _render_over}
+HANDLERS = {"render_init": _render_begins, "render_complete": _render_over,
+            "render_cancel": _render_over}

@@ -5,6 +5,7 @@ While something changes: one sample a frame, within the budget, at a coarser res
 is needed. Once still: every pixel, everything ray traced, samples added up until there are enough.
 """
 
+import json
 import threading
 import time
 from dataclasses import dataclass
@@ -19,6 +20,21 @@ SETTLE_S = 0.15       # without a change, until the view counts as still
 SHOW_EVERY_S = 0.1    # at most so often is a still view drawn again
 CALL_S = 0.1          # samples that together take about this long are rendered in one call
 FRAME_MS = 40.0       # a frame while something changes should take no longer
+TELL_EVERY_S = 0.2    # at most so often are a frame's statistics read
+MOST_UNITS = 200      # of a scene whose statistics are read at all: that takes 0.2 ms
+STOP_S = 0.05         # at most so long is a pause once the thread is to end
+
+_alone = threading.Event()  # no final render is running
+_alone.set()
+
+
+def hold_back():
+    """Let no viewport begin another frame until go_on(): a final render needs the cores."""
+    _alone.clear()
+
+
+def go_on():
+    _alone.set()
 
 
 @dataclass(frozen=True)
@@ -52,10 +68,12 @@ class RenderThread(threading.Thread):
         self._news = threading.Condition()
         self._request = None    # (View, Quality)
         self._generation = 0    # of request and scene
-        self._taken = 0         # the generation that was last rendered
+        self._taken = 0         # the generation that was last rendered, None: none was
         self._stopping = False
         self._refining = False  # the frame under way is given up when something changes
         self._auto_size = PixelSize()
+        self._told = ""         # what frame_text() said last,
+        self._told_at = 0.0     # and when, on time.monotonic()
 
     # ---- for the main thread: none of these waits for a frame ----
 
@@ -103,7 +121,7 @@ class RenderThread(threading.Thread):
                 if not self._stopping:
                     self._refine()
             except capi.Cancelled:
-                pass
+                self._taken = None  # what was to be seen is still due
             except capi.KestrelError as error:
                 self._tell("", str(error))
             except Exception as error:
@@ -125,6 +143,13 @@ class RenderThread(threading.Thread):
         self.status, self.error = status, error
         self._redraw()
 
+    def _pause(self):
+        """Wait while a final render is running."""
+        if not _alone.is_set():
+            self._tell("Waiting for the final render")
+        while not (self._stopping or _alone.wait(STOP_S)):
+            pass
+
     def _frame(self, view, size, settings, progress):
         """Render; returns (pixels in the library's memory, milliseconds of rendering)."""
         with self.editing:
@@ -140,6 +165,7 @@ class RenderThread(threading.Thread):
 
     def _move(self):
         """A frame in time, seen through to its end: else none would be shown while things move."""
+        self._pause()
         view, quality = self._take()
         pixel_size = quality.pixel_size or self._auto_size.value
         size = tuple(max(1, -(-side // pixel_size)) for side in view.size)
@@ -151,7 +177,16 @@ class RenderThread(threading.Thread):
                                   time.monotonic())
         self.picture = Picture(pixels.copy(), *size, view, 0)
         coarse = f" | Pixel size {pixel_size}" if pixel_size > 1 else ""
-        self._tell(f"Moving | {ms:.0f} ms{coarse}")
+        self._tell(f"Moving | {ms:.0f} ms{coarse}{self._frame_text()}")
+
+    def _frame_text(self):
+        """What frame_text() says of the last frame, or of one a moment ago."""
+        now = time.monotonic()
+        if len(self._session.objects.descriptions) > MOST_UNITS:
+            self._told = ""
+        elif now - self._told_at >= TELL_EVERY_S:
+            self._told, self._told_at = frame_text(json.loads(self._session.renderer.stats())), now
+        return self._told
 
     def _refine(self):
         """Add up samples until there are enough or something changes."""
@@ -160,6 +195,9 @@ class RenderThread(threading.Thread):
         self._refining = True
         try:
             while done < quality.samples:
+                self._pause()
+                if self._interrupted():
+                    return
                 pixels, ms = self._frame(
                     view, view.size, {"budget_ms": 0, "samples": count, "first_sample": done},
                     lambda _fraction, _status: not self._interrupted())
@@ -179,3 +217,11 @@ class RenderThread(threading.Thread):
 
     def _interrupted(self):
         return self._stopping or self._generation != self._taken
+
+
+def frame_text(stats):
+    """Which objects a frame ray traced and where its time went, to be added to a line."""
+    objects, stages = stats["objects"], stats["stages_ms"]
+    traced = sum(bool(item["effects"]) for item in objects)
+    return (f" | {traced} of {len(objects)} objects ray traced | raster {stages['raster']:.0f}, "
+            f"trace {stages['trace']:.0f} ms")

@@ -6,7 +6,10 @@ from unittest import mock
 
 import bpy
 import numpy as np
-from kestrel import display, session
+from kestrel import display, session, viewport
+from kestrel.final_render import FinalRender
+from kestrel.native import capi
+from kestrel.render_thread import RenderThread
 from keyboard import Keyboard
 from support import read_planes, rgba
 from viewport_support import ViewportTest, psnr
@@ -141,3 +144,79 @@ class CancelTest(FinalTest):
         self.view.type = "VIEW_3D"
         self.render_shading()
         yield self.settled
+
+
+class BesideTest(FinalTest):
+    """A 3D view in Rendered shading, open all the while."""
+    size = (640, 360)
+    samples = 4096  # it is never done
+
+    def watch_frames(self):
+        """List of when the viewport began its frames, on time.monotonic()."""
+        times = []
+        original = RenderThread._frame
+
+        def frame(thread, *arguments):
+            times.append(time.monotonic())
+            return original(thread, *arguments)
+
+        patch = mock.patch.object(RenderThread, "_frame", frame)
+        patch.start()
+        self.addCleanup(patch.stop)
+        return times
+
+    def begin(self):
+        self.scene.kestrel.threads = 0
+        self.view.type = "VIEW_3D"
+        self.render_shading()
+
+    def waits(self):
+        return self.viewport.status == "Waiting for the final render"
+
+    def test_waits_for_the_render(self):
+        self.begin()
+        frames = self.watch_frames()
+        yield lambda: len(frames) > 2
+        self.scene.kestrel.samples = 64
+        self.start()
+        yield self.waits
+        count, begun = len(frames), time.monotonic()
+        yield lambda: time.monotonic() - begun > 0.3 or self.over()
+        self.assertEqual(len(frames), count)
+        yield self.over
+        yield lambda: len(frames) > count + 2
+        self.assertIn("Sample", self.viewport.status)
+
+    def test_goes_on_after_escape(self):
+        self.begin()
+        frames = self.watch_frames()
+        yield lambda: len(frames) > 2
+        self.scene.kestrel.samples = 4096
+        self.start()
+        yield self.waits
+        count = len(frames)
+        yield self.stopped
+        yield lambda: len(frames) > count + 2
+
+    def test_goes_on_after_a_failure(self):
+        self.begin()
+        frames = self.watch_frames()
+        yield lambda: len(frames) > 2
+        with mock.patch.object(FinalRender, "_read",
+                               side_effect=capi.KestrelError("Broken.")) as read:
+            self.start()
+            yield lambda: read.called and self.over()
+        count = len(frames)
+        yield lambda: len(frames) > count + 2
+
+    def test_closes_while_it_waits(self):
+        self.begin()
+        frames = self.watch_frames()
+        yield lambda: len(frames) > 2
+        self.scene.kestrel.samples = 4096
+        self.start()
+        yield self.waits
+        self.space.shading.type = "SOLID"
+        yield lambda: not viewport.open_viewports()
+        self.view.type = "TEXT_EDITOR"
+        yield self.stopped

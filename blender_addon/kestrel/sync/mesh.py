@@ -56,7 +56,7 @@ def _send(export, mesh, key, name, shape):
         return 0
     *values, uv_map, attributes = arrays(mesh, *shape)
     ident = export.new_id(capi.KIND_MESH, key)
-    content = (digest(*values, *(array for _, array in attributes)), uv_map,
+    content = (name, digest(*values, *(array for _, array in attributes)), uv_map,
                tuple(ident for ident, _ in attributes))
     export.put(capi.KIND_MESH, ident, content,
                lambda: export.scene.set_mesh(ident, name, *values, uv_map, attributes))

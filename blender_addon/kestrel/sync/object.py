@@ -153,10 +153,10 @@ class Objects:
                        from_columns(instances.places[item]))
 
     def send_unit_settings(self, table):
-        _, first = np.unique(table.numbers, return_index=True)
-        idents = table.ids[first].tolist()
+        numbers, first = np.unique(table.numbers, return_index=True)
         done = set()
-        for ident, (_, unit, *_) in zip(idents, table.descriptions.values()):
+        for number, ident in zip(numbers.tolist(), table.ids[first].tolist()):
+            unit = table.descriptions[number][1]
             if unit not in done:
                 done.add(unit)
                 self.unit_settings(ident, unit, self.owners[unit])

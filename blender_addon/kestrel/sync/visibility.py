@@ -18,9 +18,11 @@ def visibility(export, obj, owner, view_layer):
             hidden |= rays
     if owner.indirect_only_get(view_layer=view_layer):
         hidden |= capi.RAYS_CAMERA
-    material = obj.active_material
-    if material is not None and material.name == export.session.unseen_material:
-        hidden |= capi.RAYS_CAMERA
+    if export.session.unseen_material:
+        # The original's: an evaluated object may name a material that Blender has freed.
+        material = obj.original.active_material
+        if material is not None and material.name == export.session.unseen_material:
+            hidden |= capi.RAYS_CAMERA
     if obj.is_shadow_catcher or owner.is_shadow_catcher:
         export.warn(f"Object '{owner.name}': shadow catchers are not supported; it is drawn like "
                     "any other object.")
