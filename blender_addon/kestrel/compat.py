@@ -273,9 +273,15 @@ def node_input(node, *names):
     return None
 
 
+def specular_follows_ior(node):
+    """Whether a Principled BSDF's dielectric part has the index of refraction (4.0 on), adjusted by
+    its Specular; before, Specular alone counted."""
+    return "Specular IOR Level" in node.inputs
+
+
 def specular_f0(node, specular, ior):
     """Reflectance at normal incidence of a Principled BSDF's dielectric part."""
-    if "Specular IOR Level" in node.inputs:  # 4.0 on: 0.5 leaves what the index gives
+    if specular_follows_ior(node):  # 0.5 leaves what the index gives
         return ((ior - 1.0) / (ior + 1.0)) ** 2 * 2.0 * specular
     return 0.08 * specular
 
@@ -293,9 +299,14 @@ def chooses_nodes(datablock):
 
 def alpha_cutoff(material):
     """Alpha below which a masked surface is absent."""
-    if getattr(material, "blend_method", "") == "CLIP":
+    if clips_alpha(material):
         return material.alpha_threshold
     return 0.5
+
+
+def clips_alpha(material):
+    """Whether the artist chose holes with hard edges over see-through alpha."""
+    return getattr(material, "blend_method", "") == "CLIP"
 
 
 def blends_alpha(material):

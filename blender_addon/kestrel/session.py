@@ -111,7 +111,9 @@ class Export:
         self._touched = touched
         self._shapes = {}   # as Session.shapes
 
-    def warn(self, text):
+    def warn(self, note):
+        """Say a text, or a nodes.Note."""
+        text = str(note)
         if text not in self.session.warned:
             self.session.warned.add(text)
             self._say(text)

@@ -6,9 +6,8 @@ import unittest
 
 import bpy
 import numpy as np
-from kestrel.sync import material as sync_material
-from kestrel.sync.image import mean_color
-from kestrel.sync.material import read_surface
+from kestrel.sync import surface as sync_surface
+from kestrel.sync.surface import NotPlain, read_surface
 from mathutils import Matrix
 from support import (SceneTest, diffuse, emission, image, new_material, shader_material, textured)
 
@@ -20,10 +19,8 @@ except RuntimeError:
     GLOSSY = "ShaderNodeBsdfAnisotropic"
 
 
-def read(material, warnings=None, environment_ior=1.0):
-    said = [] if warnings is None else warnings
-    return read_surface(material, environment_ior, said.append,
-                        lambda texture: mean_color(texture.image))
+def read(material, environment_ior=1.0):
+    return read_surface(material, environment_ior)
 
 
 def principled(name, **inputs):
@@ -137,7 +134,7 @@ class TableTest(SceneTest):
 
     def test_without_a_shader(self):
         material, _, _ = new_material("Nothing")
-        self.assertEqual(read(material), sync_material.Surface())
+        self.assertEqual(read(material), sync_surface.Surface())
 
 
 class GraphTest(SceneTest):
@@ -194,14 +191,13 @@ class GraphTest(SceneTest):
         self.assertEqual(surface.diffuse.texture.image, node.image)
         np.testing.assert_allclose(surface.diffuse.color, (1, 1, 1))
 
-    def test_alpha_that_no_image_gives_is_reported(self):
+    def test_alpha_that_no_image_gives_is_not_plain(self):
         material = principled("P")
         tree = material.node_tree
         noise = tree.nodes.new("ShaderNodeTexNoise")
         tree.links.new(noise.outputs[0], tree.nodes["Principled BSDF"].inputs["Alpha"])
-        warnings = []
-        self.assertFalse(read(material, warnings).masked)
-        self.assertRegex(warnings[0], "Material 'P': .*Noise.*the surface is opaque")
+        with self.assertRaisesRegex(NotPlain, "Material 'P': .*Noise"):
+            read(material)
 
     def test_groups_reroutes_and_muted_nodes_are_seen_through(self):
         inner = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
@@ -225,9 +221,7 @@ class GraphTest(SceneTest):
         tree.links.new(color.outputs[0], reroute.inputs[0])
         tree.links.new(reroute.outputs[0], group.inputs[0])
         tree.links.new(group.outputs[0], output.inputs["Surface"])
-        warnings = []
-        np.testing.assert_allclose(read(material, warnings).diffuse.color, (0.25, 0.5, 1.0))
-        self.assertEqual(warnings, [])
+        np.testing.assert_allclose(read(material).diffuse.color, (0.25, 0.5, 1.0))
 
     def test_image_times_colour(self):
         material, tree, output = new_material("Product")
@@ -241,38 +235,34 @@ class GraphTest(SceneTest):
         tree.links.new(texture.outputs["Color"], mix.inputs[1])
         tree.links.new(mix.outputs[0], shader.inputs["Color"])
         tree.links.new(shader.outputs[0], output.inputs["Surface"])
-        warnings = []
-        surface = read(material, warnings)
+        surface = read(material)
         np.testing.assert_allclose(surface.diffuse.color, (0.5, 0.25, 1.0))
         self.assertEqual(surface.diffuse.texture.image, texture.image)
-        self.assertEqual(warnings, [])
 
-    def test_unsupported_nodes_are_named(self):
-        material, tree, output = new_material("Odd")
-        shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
-        noise = tree.nodes.new("ShaderNodeTexNoise")
-        noise.label = "My noise"
-        shader.inputs["Color"].default_value = (0.1, 0.2, 0.3, 1.0)
-        tree.links.new(noise.outputs["Color"], shader.inputs["Color"])
-        tree.links.new(shader.outputs[0], output.inputs["Surface"])
-        warnings = []
-        np.testing.assert_allclose(read(material, warnings).diffuse.color, (0.1, 0.2, 0.3),
-                                   rtol=1e-5)
-        self.assertEqual(len(warnings), 1)
-        self.assertRegex(warnings[0], "Material 'Odd': node 'My noise' .Noise Texture. is not "
-                                      "supported; the colour .0.1, 0.2, 0.3. is used instead")
+    def test_other_nodes_are_not_plain(self):
+        for kind in ("TexNoise", "RGBCurve", "HueSaturation", "ValToRGB"):
+            material, tree, output = new_material("Odd")
+            shader, node = (tree.nodes.new(f"ShaderNode{k}") for k in ("BsdfDiffuse", kind))
+            tree.links.new(node.outputs["Color"], shader.inputs["Color"])
+            tree.links.new(shader.outputs[0], output.inputs["Surface"])
+            with self.assertRaises(NotPlain):
+                read(material)
 
-    def test_image_behind_an_unsupported_node_is_used(self):
-        material, tree, output = new_material("Curves")
-        shader, curves, texture = (tree.nodes.new(f"ShaderNode{kind}") for kind in
-                                   ("BsdfDiffuse", "RGBCurve", "TexImage"))
-        texture.image = checker()
-        tree.links.new(texture.outputs["Color"], curves.inputs["Color"])
-        tree.links.new(curves.outputs["Color"], shader.inputs["Color"])
-        tree.links.new(shader.outputs[0], output.inputs["Surface"])
-        warnings = []
-        self.assertEqual(read(material, warnings).diffuse.texture.image, texture.image)
-        self.assertRegex(warnings[0], "RGB Curves.*the image 'Checker' is used as it is")
+    def test_images_mapped_in_different_ways_are_not_plain(self):
+        material, texture = textured("Two", checker(), "ShaderNodeBsdfPrincipled")
+        tree = material.node_tree
+        other, mapping = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeMapping")
+        other.image = checker("Other")
+        mapping.inputs["Scale"].default_value = (2, 2, 2)
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+        tree.links.new(mapping.outputs[0], other.inputs["Vector"])
+        shader = tree.nodes["Principled BSDF"]
+        glow = shader.inputs["Emission Color" if "Emission Color" in shader.inputs else "Emission"]
+        tree.links.new(other.outputs["Color"], glow)
+        shader.inputs["Emission Strength"].default_value = 1.0
+        with self.assertRaisesRegex(NotPlain, "mapped in different ways"):
+            read(material)
 
     def test_mapping(self):
         material, texture = textured("Mapped", checker(), "ShaderNodeBsdfDiffuse")
@@ -287,23 +277,10 @@ class GraphTest(SceneTest):
         np.testing.assert_allclose((*found.tiling, *found.offset), (1 / 2, 1 / 3, -1 / 8, -1 / 6),
                                    rtol=1e-6)
 
-    def test_images_tint_reflections_by_their_mean(self):
-        material, texture = textured("Gold", checker(), GLOSSY)
-        node = texture.outputs["Color"].links[0].to_node
-        node.inputs["Roughness"].default_value = 0.0
-        warnings = []
-        surface = read(material, warnings)
-        self.assertAlmostEqual(surface.reflectivity, 0.5, 5)  # half red, half green
-        np.testing.assert_allclose(surface.reflection_color, (1, 1, 0), atol=1e-6)
-        self.assertRegex(warnings[0], "mean colour of 'Checker' tints its rays")
-
-    def test_cyclic_links_end(self):
-        material, tree, output = new_material("Cycle")
-        mixes = [tree.nodes.new("ShaderNodeMixShader") for _ in range(2)]
-        tree.links.new(mixes[0].outputs[0], mixes[1].inputs[1])
-        tree.links.new(mixes[1].outputs[0], mixes[0].inputs[1])
-        tree.links.new(mixes[1].outputs[0], output.inputs["Surface"])
-        self.assertEqual(read(material).diffuse.color, (0, 0, 0))
+    def test_images_do_not_tint_plain_reflections(self):
+        material, _ = textured("Gold", checker(), GLOSSY)
+        with self.assertRaises(NotPlain):
+            read(material)
 
 
 class PictureTest(SceneTest):
@@ -457,6 +434,6 @@ class HighlightTest(unittest.TestCase):
     def test_peak_is_the_microfacet_models(self):
         """F0 / (4 r⁴) at normal incidence, GGX and Fresnel of Cycles."""
         for roughness in (0.4, 0.6, 0.9):
-            specular, exponent = sync_material.highlight((0.04,) * 3, roughness)
+            specular, exponent = sync_surface.highlight((0.04,) * 3, roughness)
             self.assertAlmostEqual(specular[0], 0.04 / (4 * roughness ** 4),
                                    4 if exponent > 1 else 1)

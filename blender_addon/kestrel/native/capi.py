@@ -81,6 +81,30 @@ class TextureOptions(Structure):
     ]
 
 
+class NodeInstruction(Structure):
+    _fields_ = [
+        ("op", c_uint32),
+        ("mode", c_uint32),
+        ("result", c_int32),
+        ("data", c_int32),
+        ("operands", c_int32 * 8),
+    ]
+
+
+class NodeProgram(Structure):
+    _fields_ = [
+        ("instructions", POINTER(NodeInstruction)),
+        ("instruction_count", c_size_t),
+        ("constants", float_p),
+        ("constant_count", c_size_t),
+        ("textures", uint64_p),
+        ("texture_count", c_size_t),
+        ("attributes", uint64_p),
+        ("attribute_count", c_size_t),
+        ("outputs", c_int32 * 10),
+    ]
+
+
 class Material(Structure):
     _fields_ = [
         ("name", c_char_p),
@@ -109,7 +133,23 @@ class Material(Structure):
         ("emission_attribute", c_uint64),
         ("ambient_attribute", c_uint64),
         ("diffuse_attribute", c_uint64),
+        ("program", POINTER(NodeProgram)),
     ]
+    program_content = None  # what the program says, comparable
+
+    def set_program(self, program, textures, attributes):
+        """Let a sync.program.Program compute the properties; ids of its textures and attributes."""
+        textures, attributes = (np.array(ids, np.uint64) for ids in (textures, attributes))
+        made = NodeProgram(
+            pointer(program.instructions, POINTER(NodeInstruction), np.int32),
+            len(program.instructions), pointer(program.constants, float_p, np.float32),
+            len(program.constants), pointer(textures, uint64_p, np.uint64), len(textures),
+            pointer(attributes, uint64_p, np.uint64), len(attributes))
+        made.outputs[:] = program.outputs
+        self.program = ctypes.pointer(made)
+        self._kept_alive = program, textures, attributes, made
+        self.program_content = (program.instructions.tobytes(), program.constants.tobytes(),
+                                textures.tobytes(), attributes.tobytes(), program.outputs)
 
 
 class Light(Structure):
@@ -181,6 +221,7 @@ FUNCTIONS = {
     "kestrelSetLogCallback": (None, [LogCallback, c_void_p]),
     "kestrelSetLogLevel": (None, [c_int]),
     "kestrelGetParameterTable": (c_char_p, []),
+    "kestrelGetNodeTable": (c_char_p, []),
     "kestrelHash": (c_int, [c_void_p, c_size_t, uint64_p]),
     "kestrelNewDevice": (c_void_p, []),
     "kestrelRetainDevice": (None, [c_void_p]),
@@ -261,11 +302,13 @@ def pointer(array, kind, dtype):
 
 
 def content(item):
-    """What a struct says, comparable between structs; its only pointer is the name."""
-    name, item.name = item.name, None
-    data = bytes(item)
-    item.name = name
-    return name, data
+    """What a Material or Light says, comparable between structs."""
+    plain = type(item).from_buffer_copy(item)
+    plain.name = None
+    program = getattr(item, "program_content", None)
+    if program:
+        plain.program = None
+    return item.name, program, bytes(plain)
 
 
 class Library:
@@ -281,6 +324,10 @@ class Library:
     def parameter_table(self):
         """The table as JSON text."""
         return self.c.kestrelGetParameterTable().decode()
+
+    def node_table(self):
+        """The table of node instructions as JSON text."""
+        return self.c.kestrelGetNodeTable().decode()
 
     def set_log_callback(self, callback):
         """`callback` is a LogCallback, kept alive by the caller, or None for standard error."""

@@ -31,6 +31,7 @@ NOTE = "_kestrel_library"
 _library = None
 _error = ""
 _table = None
+_node_table = None
 _plugin_loads = None
 _device_info = None
 
@@ -152,6 +153,14 @@ def parameter_table():
     return _table
 
 
+def node_table():
+    """The table of node instructions. Raises KestrelError where there is no library."""
+    global _node_table
+    if _node_table is None:
+        _node_table = json.loads(require().node_table())
+    return _node_table
+
+
 def device_info():
     """What the library says of this machine, as a dict; asked for once."""
     global _device_info
@@ -183,7 +192,7 @@ def image_plugin_available():
 
 def release():
     """Give the device back; the library itself stays loaded, as unloading is never safe."""
-    global _library, _error, _table
+    global _library, _error, _table, _node_table
     if _library is not None:
         _library.release()
-    _library, _error, _table = None, "", None
+    _library, _error, _table, _node_table = None, "", None, None

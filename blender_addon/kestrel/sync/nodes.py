@@ -2,9 +2,8 @@
 """Reading node trees: what feeds a socket, as a constant colour times at most one image and at most
 one colour attribute of the mesh.
 
-Reroutes, muted nodes and groups are seen through. A node that cannot be followed is reported once,
-by material and node; then the first image found upstream stands in for it, else the socket's own
-value.
+Reroutes, muted nodes and groups are seen through. A node that cannot be followed is reported; then
+the first image found upstream stands in for it, else the socket's own value.
 """
 
 from dataclasses import dataclass, replace
@@ -16,6 +15,19 @@ WHITE = (1.0, 1.0, 1.0)
 BLACK = (0.0, 0.0, 0.0)
 EXTENSIONS = {"REPEAT": capi.EXTENSION_REPEAT, "EXTEND": capi.EXTENSION_CLAMP,
               "CLIP": capi.EXTENSION_CLIP}
+
+
+@dataclass(frozen=True)
+class Note:
+    """What is done instead of what a node says."""
+    owner: str    # "Material 'Wood'"
+    node: str     # its label or name, after those of the groups that it is in
+    kind: str     # "Noise Texture"
+    instead: str
+
+    def __str__(self):
+        return (f"{self.owner}: node '{self.node}' ({self.kind}) is not fully supported; "
+                f"{self.instead}.")
 
 
 @dataclass(frozen=True)
@@ -64,11 +76,6 @@ class Value:
         return Value(WHITE, self.texture or other.texture, attribute).scaled(
             tuple(a * b for a, b in zip(self.color, other.color)))
 
-    @property
-    def luminance(self):
-        return 0.2126 * self.color[0] + 0.7152 * self.color[1] + 0.0722 * self.color[2]
-
-
 def constant(value):
     """A socket's own value as a colour; numbers become grey."""
     if hasattr(value, "__len__"):
@@ -89,15 +96,20 @@ def by_identifier(sockets, socket):
 
 
 class Reader:
-    """Follows the links of one datablock's node tree. `owner` names it in messages."""
+    """Follows the links of one datablock's node tree. `owner` names it in messages; `report` takes
+    Notes."""
 
-    def __init__(self, owner, warn):
+    def __init__(self, owner, report):
         self.owner = owner
-        self._warn = warn
+        self._report = report
+
+    def note(self, node, stack, instead):
+        """Report a node of the groups `stack`."""
+        path = " / ".join(item.label or item.name for item in (*stack, node))
+        self._report(Note(self.owner, path, node.bl_label, instead))
 
     def unsupported(self, node, instead):
-        label = node.label or node.name
-        self._warn(f"{self.owner}: node '{label}' ({node.bl_label}) is not supported; {instead}.")
+        self.note(node, (), instead)
 
     def source(self, socket, stack=()):
         """(node, its output, group stack) that feeds an input, or (None, socket, stack) where an
@@ -127,8 +139,8 @@ class Reader:
                 socket, stack = outside, stack[:-1]
             else:
                 return node, output, stack
-        self._warn(f"{self.owner}: the node links form a cycle; socket '{socket.name}' keeps its "
-                   "own value.")
+        self.note(socket.node, stack, f"the links to it form a cycle; '{socket.name}' keeps its own "
+                                      "value")
         return None, socket, stack
 
     def first_image(self, node, stack, depth=0):
@@ -270,14 +282,9 @@ def color_attribute(node, output):
 
 
 def sum_values(a, b):
-    """a + b. Exact unless they vary differently: then the brighter one's texture and attribute are
-    kept and the other joins as a constant of mean grey (half)."""
+    """a + b, or None where they vary differently."""
     if a.texture == b.texture and a.attribute == b.attribute:
         return replace(a, color=tuple(x + y for x, y in zip(a.color, b.color)))
     if not any(a.color):
         return b
-    if not any(b.color):
-        return a
-    main, other = (a, b) if a.varies and (not b.varies or a.luminance >= b.luminance) else (b, a)
-    weight = 0.5 if other.varies else 1.0
-    return replace(main, color=tuple(x + weight * y for x, y in zip(main.color, other.color)))
+    return None if any(b.color) else a
