@@ -71,6 +71,11 @@ WORDS = (
     ("Object Id", "Nummer des Objekts", "Numéro de l’objet"),
     ("Material Id", "Nummer des Materials", "Numéro du matériau"),
     ("Reversed Depth", "Umgekehrte Tiefe", "Profondeur inversée"),
+    # Node coverage
+    ("Node Coverage", "Unterstützte Knoten", "Prise en charge des nœuds"),
+    ("All nodes are supported", "Alle Knoten werden unterstützt",
+     "Tous les nœuds sont pris en charge"),
+    ("Selected Line", "Gewählte Zeile", "Ligne sélectionnée"),
     # Preferences
     ("Version", "Version", "Version"),
     ("Library", "Bibliothek", "Bibliothèque"),
@@ -86,6 +91,9 @@ BUTTONS = (
     ("Copy Kestrel System Report", "Systembericht von Kestrel kopieren",
      "Copier le rapport système de Kestrel"),
     ("Open Kestrel Log", "Protokoll von Kestrel öffnen", "Ouvrir le journal de Kestrel"),
+    ("Check Materials", "Materialien prüfen", "Vérifier les matériaux"),
+    ("Copy Node Coverage", "Liste kopieren", "Copier la liste"),
+    ("Select Material", "Material auswählen", "Sélectionner le matériau"),
     ("Export Kestrel Scene", "Kestrel-Szene exportieren", "Exporter une scène Kestrel"),
     ("Kestrel Scene (.kscene)", "Kestrel-Szene (.kscene)", "Scène Kestrel (.kscene)"),
 )

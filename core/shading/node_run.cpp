@@ -134,9 +134,12 @@ NodePoint node_point(Host& host, const Material& material, const BarePoint& bare
   p.position_os = host.object_from_world * (bare.position - object.world_from_object[3]);
   p.normal_os = node_normalize(glm::transpose(mat3(object.world_from_object)) * p.normal, p.normal);
   const Bounds& bounds = host.mesh.bounds;
-  p.texture_space_from = bounds.lower;
   const vec3 size = bounds.upper - bounds.lower;
-  p.texture_space_scale = node_divide3(vec3(1.0f), size);
+  for (int axis = 0; axis < 3; ++axis) {  // a flat mesh is in the middle of its texture space
+    const bool flat = size[axis] == 0.0f;
+    p.texture_space_from[axis] = bounds.lower[axis] - (flat ? 1.0f : 0.0f);
+    p.texture_space_scale[axis] = flat ? 0.5f : 1.0f / size[axis];
+  }
   p.object_location = object.world_from_object[3];
   const float pixel = pixel_size(host.scene.camera, look.distance);
   span_plane(p.true_normal, p.step_x, p.step_y);

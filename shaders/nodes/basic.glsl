@@ -77,8 +77,8 @@ NODE_FUNCTION float node_math(uint operation, float a, float b, float c) {
     case 29u: return sin(a);
     case 30u: return cos(a);
     case 31u: return tan(a);
-    case 32u: return abs(a) <= 1.0f ? asin(a) : 0.0f;
-    case 33u: return abs(a) <= 1.0f ? acos(a) : 0.0f;
+    case 32u: return asin(clamp(a, -1.0f, 1.0f));
+    case 33u: return acos(clamp(a, -1.0f, 1.0f));
     case 34u: return atan(a);
     case 35u: return a == 0.0f && b == 0.0f ? 0.0f : atan(a, b);
     case 36u: return 0.5f * (exp(a) - exp(-a));

@@ -34,7 +34,7 @@ class PanelCase(SceneTest):
         known = {
             "engine": "KESTREL", "scene": self.scene, "view_layer": self.scene.view_layers[0],
             "object": obj, "active_object": obj, "world": self.scene.world,
-            "preferences": bpy.context.preferences, "material_slot": None,
+            "preferences": bpy.context.preferences, "window_manager": bpy.context.window_manager, "material_slot": None,
             "space_data": types.SimpleNamespace(bl_rna=bpy.types.SpaceProperties.bl_rna),
             "material": obj.active_material if obj else None,
             "light": data if isinstance(data, bpy.types.Light) else None,

@@ -4,7 +4,7 @@ where it is Blender's, by Blender, or is a name."""
 
 import bpy
 import fake_layout
-from kestrel import export_scene, operators, properties, translations, ui
+from kestrel import coverage, export_scene, operators, properties, translations, ui
 from test_panels import PanelCase, kestrel_properties
 
 # Blender's own words that one of the languages writes as English does.
@@ -31,7 +31,8 @@ class TranslationTest(PanelCase):
     def words(self):
         """(context, word) of everything that Kestrel shows on panels, menus and buttons."""
         found = set()
-        for cls in ui.CLASSES + operators.CLASSES + export_scene.CLASSES:
+        for cls in (ui.CLASSES + operators.CLASSES + export_scene.CLASSES +
+                    coverage.OPERATORS):
             context = (translations.OPERATOR if issubclass(cls, bpy.types.Operator) else
                        translations.DEFAULT)
             found.add((context, cls.bl_label))

@@ -49,7 +49,8 @@ Surface surface_at(const Scene& scene, float x, float y) {
   const SurfaceHit hit =
       p.x >= p.y ? SurfaceHit{0, 0, {p.x - p.y, p.y}} : SurfaceHit{0, 1, {p.x, p.y - p.x}};
   Surface surface;
-  evaluate_surfaces(scene, {&normal_from_object, 1}, {&hit, 1}, &surface);
+  const Look look;
+  evaluate_surfaces(scene, {&normal_from_object, 1}, {&hit, 1}, {&look, 1}, &surface);
   return surface;
 }
 

@@ -56,13 +56,14 @@ def _uvs(mesh, name):
 
 def read_attributes(mesh, wanted):
     """[(id, float32 (C, 2) or (C, 3)), ...] per corner, of what the mesh has of `wanted`."""
-    result = []
+    result = {}
     for kind, name in wanted:
         values = None
-        if kind == "uv":
-            values = _uvs(mesh, name)
-        elif (found := _colors(mesh, name)) is not None:
+        found = None if kind == "uv" or name in mesh.uv_layers else _colors(mesh, name)
+        if found is not None:
             values = _per_corner(mesh, *found)
+        if values is None and name:
+            values = _uvs(mesh, name)
         if values is not None:
-            result.append((attribute_id(name or RENDER_COLOR), values))
-    return result
+            result.setdefault(attribute_id(name or RENDER_COLOR), values)
+    return list(result.items())

@@ -24,14 +24,18 @@ def file_path(image):
     return path.replace("<UDIM>", "1001").replace("<UVTILE>", "u1_v1")
 
 
-def is_srgb(image, warn):
-    """Whether 8-bit texels are sRGB-encoded."""
+def is_srgb(image):
+    """Whether 8-bit texels are taken for sRGB-encoded."""
+    return image.colorspace_settings.name not in LINEAR_SPACES
+
+
+def shortcomings(image):
+    """Texts: what is not done with an image as Blender does it."""
     space = image.colorspace_settings.name
-    if space in LINEAR_SPACES:
-        return False
-    if space != "sRGB":
-        warn(f"Image '{image.name}': colour space '{space}' is not supported; it is read as sRGB.")
-    return True
+    if is_srgb(image) and space != "sRGB":
+        yield f"colour space '{space}' is not supported; it is read as sRGB"
+    if image.source in {"SEQUENCE", "MOVIE", "TILED"}:
+        yield (f"{image.source.lower()} images are not supported; only its first picture is used")
 
 
 def pixels(image):
@@ -138,16 +142,15 @@ def sync_texture(export, texture):
     """Id of an image, sampled this way, in the core."""
     image, mask = original(texture.image), texture.mask
     shown = image or original(mask.image)
-    srgb = image is not None and is_srgb(image, export.warn)
+    srgb = image is not None and is_srgb(image)
     extra = (srgb, texture.nearest, texture.extension)
     key = f"{image and compat.datablock_key(image)}/{extra}"
     if mask:
         source = compat.datablock_key(original(mask.image))
         key += f"/{source}/{mask.from_alpha}/{mask.inverted}"
     if key not in export.textures:
-        if shown.source in {"SEQUENCE", "MOVIE", "TILED"}:
-            export.warn(f"Image '{shown.name}': {shown.source.lower()} images are not supported; "
-                        "only its first picture is used.")
+        for text in shortcomings(shown):
+            export.warn(f"Image '{shown.name}': {text}.")
         options = capi.TextureOptions(capi.encode(shown.name), *extra)
         ident = export.new_id(capi.KIND_TEXTURE, key)
         if not (mask and _as_masked(export, image, mask, ident, options, extra)):
@@ -167,7 +170,7 @@ def _linear_sample(image):
     colors = values[step // 2::step, step // 2::step, :3].astype(np.float64)
     if values.dtype == np.uint8:
         colors /= 255.0
-        if is_srgb(image, lambda _text: None):
+        if is_srgb(image):
             colors = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)
     return colors
 

@@ -53,6 +53,10 @@ class Surface:
     normal_strength: float = 1.0
     tangent_map: str = ""       # UV map along which the normal map lies; empty: the render map
 
+    def textures(self):
+        """All its nodes.Textures."""
+        return [value.texture for value in map(self.__getattribute__, TEXTURED) if value.texture]
+
     def is_lit(self):
         """Whether its normal matters."""
         return (any(self.diffuse.color) or any(self.specular) or self.reflectivity > 0.0 or
@@ -63,9 +67,7 @@ class Surface:
 
     def mapping(self):
         """(tiling, offset) that all its textures share."""
-        textures = [value.texture for value in map(self.__getattribute__, TEXTURED)
-                    if value.texture]
-        mappings = {(texture.tiling, texture.offset) for texture in textures}
+        mappings = {(texture.tiling, texture.offset) for texture in self.textures()}
         if len(mappings) > 1:
             raise NotPlain("its images are mapped in different ways")
         return mappings.pop() if mappings else ((1.0, 1.0), (0.0, 0.0))

@@ -4,10 +4,10 @@ make sense with it."""
 
 import bpy
 
-from . import light, material, object, presets, render, view_layer, world
+from . import coverage, light, material, object, presets, render, view_layer, world
 from .common import ENGINE
 
-TABS = (presets, render, object, view_layer, material, light, world)
+TABS = (presets, render, coverage, object, view_layer, material, light, world)
 CLASSES = tuple(cls for tab in TABS for cls in tab.CLASSES)
 
 # Panels for every engine without one of its own that show what Kestrel has not, or shows itself.

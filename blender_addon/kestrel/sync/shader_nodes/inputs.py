@@ -83,8 +83,14 @@ def radial_tangent(site, axis="Z"):
     x, y, z = (b.component(place, which) for which in "XYZ")
     minus = [b.multiply(b.constant(-1.0), c) for c in (x, y, z)]
     around = {"X": (0.0, minus[2], y), "Y": (minus[2], 0.0, x), "Z": (minus[1], x, 0.0)}[axis]
-    vector = b.op("vector_transform", b.combine(*around), modes=("NORMAL", "OBJECT", "WORLD"))
-    normal = site.c.input("NORMAL")
+    return in_surface(site, b.combine(*around))
+
+
+def in_surface(site, vector):
+    """The unit vector across the normal that is nearest to one in object space. It moves with the
+    object as normals do, in Cycles too."""
+    b, normal = site.b, site.c.input("NORMAL")
+    vector = b.op("vector_transform", vector, modes=("NORMAL", "OBJECT", "WORLD"))
     side = b.vector_math("NORMALIZE", b.vector_math("CROSS_PRODUCT", vector, normal))
     return b.vector_math("CROSS_PRODUCT", normal, side)
 
@@ -93,7 +99,9 @@ def tangent(site):
     if site.node.direction_type == "RADIAL":
         return radial_tangent(site, site.node.axis)
     site.c.use_tangent_map(site, site.node.uv_map)
-    return site.c.input("TANGENT")
+    along = site.b.op("vector_transform", site.c.input("TANGENT"),
+                      modes=("VECTOR", "WORLD", "OBJECT"))
+    return in_surface(site, along)
 
 
 def geometry(site):

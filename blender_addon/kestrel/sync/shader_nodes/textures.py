@@ -5,6 +5,8 @@ from ...native import capi
 from ..nodes import EXTENSIONS, Texture
 
 SKY = (0.30, 0.48, 0.80)  # stands for a sky
+DISPLAY_GAMMA = 2.2       # about that of sRGB
+DATA_SPACES = {"Non-Color", "Raw"}
 
 
 def dimensions(site):
@@ -22,18 +24,18 @@ def sampled(site, projection, vector, blend, extension):
     value = site.b.op("image", vector, blend, modes=(projection,), data=texture)
     if site.output.name == "Alpha":
         return site.b.component(value, "ALPHA")
-    if multiplies_alpha(node):
-        return site.b.multiply(value, site.b.component(value, "ALPHA"))
+    if node.type == "TEX_IMAGE" and has_coverage(node.image) and not node.outputs["Alpha"].is_linked:
+        # Cycles takes the colours times their alpha then, before it decodes them.
+        alpha = site.b.component(value, "ALPHA")
+        decoded = alpha if node.image.is_float else site.b.math("POWER", alpha, DISPLAY_GAMMA)
+        return site.b.multiply(value, decoded)
     return value
 
 
-def multiplies_alpha(node):
-    """Whether Cycles takes an image's colours times their alpha: where the node's Alpha has no
-    link, and the image is not said to hold anything else there."""
-    alpha = node.outputs.get("Alpha")
-    image = node.image
-    return (alpha is not None and not alpha.is_linked and image.alpha_mode == "STRAIGHT" and
-            image.channels == 4)
+def has_coverage(picture):
+    """Whether an image's alpha says how much of a texel is there."""
+    return (picture.alpha_mode == "STRAIGHT" and picture.depth in (32, 64, 128) and
+            picture.colorspace_settings.name not in DATA_SPACES)
 
 
 def mirrored(b, vector):

@@ -18,9 +18,12 @@ def vector_rotate(site):
 
 
 def vector_transform(site):
-    node = site.node
-    return site.b.op("vector_transform", site.value("Vector"),
-                     modes=(node.vector_type, node.convert_from, node.convert_to))
+    """Normals too as vectors are, but for their length: so does Cycles."""
+    node, b = site.node, site.b
+    kind = "POINT" if node.vector_type == "POINT" else "VECTOR"
+    moved = b.op("vector_transform", site.value("Vector"),
+                 modes=(kind, node.convert_from, node.convert_to))
+    return b.vector_math("NORMALIZE", moved) if node.vector_type == "NORMAL" else moved
 
 
 def normal(site):
