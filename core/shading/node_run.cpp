@@ -117,8 +117,7 @@ vec4 tangent_of(const Host& host, const Material& material) {
   const std::vector<vec4>& tangents = host.mesh.tangents_of(material.tangent_map);
   if (tangents.empty()) return vec4(0.0f);
   const vec4 t = at_corners(tangents, host, 0);
-  const float side = (t.w < 0.0f ? -1.0f : 1.0f) * (host.object.flips_orientation ? -1.0f : 1.0f);
-  return {mat3(host.object.world_from_object) * vec3(t), side};
+  return {vec3(t), t.w < 0.0f ? -1.0f : 1.0f};
 }
 
 NodePoint node_point(Host& host, const Material& material, const BarePoint& bare,
@@ -150,7 +149,7 @@ NodePoint node_point(Host& host, const Material& material, const BarePoint& bare
   host.beside[0] = vec2(0.0f);
   host.beside[1] = barycentric_step(host.mesh, host.hit.triangle, p.step_x_os);
   host.beside[2] = barycentric_step(host.mesh, host.hit.triangle, p.step_y_os);
-  p.tangent = tangent_of(host, material);
+  p.tangent_os = tangent_of(host, material);
   p.parametric = host.hit.barycentric;
   p.position_camera = from_world(host, bare.position, kPoint, kCamera);
   const Camera& camera = host.scene.camera;

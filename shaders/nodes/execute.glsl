@@ -19,7 +19,7 @@ NODE_FUNCTION uint node_digit(INOUT(uint) mode, uint count) {
 NODE_FUNCTION int node_blender(uint mode) { return 3 + int(mode); }
 
 // `place`: 0 here, 1 and 2 a step beside (for bumps).
-NODE_FUNCTION vec4 node_input(uint what, int place, NodePoint p) {
+NODE_FUNCTION vec4 node_input(NODE_HOST_PARAMETER uint what, int place, NodePoint p) {
   vec3 beside = place == 1 ? p.step_x : place == 2 ? p.step_y : vec3(0.0f);
   vec3 beside_os = place == 1 ? p.step_x_os : place == 2 ? p.step_y_os : vec3(0.0f);
   switch (what) {
@@ -34,7 +34,9 @@ NODE_FUNCTION vec4 node_input(uint what, int place, NodePoint p) {
     case kInputNormal: return node_vector(p.normal);
     case kInputObjectNormal: return node_vector(p.normal_os);
     case kInputTrueNormal: return node_vector(p.true_normal);
-    case kInputTangent: return vec4(p.tangent.x, p.tangent.y, p.tangent.z, 1.0f);
+    case kInputTangent:
+      return node_vector(node_normalize(
+          node_transform(NODE_HOST node_xyz(p.tangent_os), 0u, 1u, 0u), vec3(0.0f)));
     case kInputIncoming: return node_vector(p.incoming);
     case kInputParametric: return vec4(p.parametric.x, p.parametric.y, 0.0f, 1.0f);
     case kInputBackfacing: return node_scalar(p.backfacing ? 1.0f : 0.0f);
@@ -114,15 +116,14 @@ NODE_FUNCTION vec3 node_normal_map(NODE_HOST_PARAMETER uint space, vec3 color, f
   vec3 painted = color * 2.0f - vec3(1.0f);
   float side = p.backfacing ? -1.0f : 1.0f;
   if (space == 0u) {
-    vec3 own = side * p.normal;
-    vec3 along = vec3(p.tangent.x, p.tangent.y, p.tangent.z);
-    vec3 tangent = node_normalize(along - own * dot(own, along), vec3(0.0f));
-    if (p.tangent.w == 0.0f || tangent == vec3(0.0f)) return p.normal;
-    vec3 bitangent = cross(own, tangent) * p.tangent.w;
+    if (p.tangent_os.w == 0.0f) return p.normal;
+    vec3 own = side * p.normal_os;
+    vec3 tangent = node_xyz(p.tangent_os);
+    vec3 bitangent = cross(own, tangent) * p.tangent_os.w;
     float height = mix(1.0f, painted.z, clamp(strength, 0.0f, 1.0f));
-    return side * node_normalize(painted.x * strength * tangent +
-                                     painted.y * strength * bitangent + height * own,
-                                 own);
+    vec3 bent =
+        painted.x * strength * tangent + painted.y * strength * bitangent + height * own;
+    return side * node_normalize(node_transform(NODE_HOST bent, 2u, 1u, 0u), side * p.normal);
   }
   if (space >= 3u) painted = vec3(painted.x, -painted.y, -painted.z);  // as old Blenders baked them
   vec3 n = painted;
@@ -136,7 +137,7 @@ NODE_FUNCTION vec4 node_execute(NODE_HOST_PARAMETER uint op, uint all_modes, int
                                 vec4 v[kNodeInputs], NodePoint p) {
   uint mode = all_modes;
   switch (op) {
-    case kNodeInput: return node_input(mode, data, p);
+    case kNodeInput: return node_input(NODE_HOST mode, data, p);
     case kNodeAttribute: return node_attribute(NODE_HOST data, int(mode));
     case kNodeImage: return node_image(NODE_HOST mode, data, node_xyz(v[0]), v[1].x, p);
     case kNodeComponent:

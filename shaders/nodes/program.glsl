@@ -111,7 +111,7 @@ struct NodePoint {
   vec3 step_y;
   vec3 step_x_os;
   vec3 step_y_os;
-  vec4 tangent;  // world space; w: side of the bitangent; 0: there is none
+  vec4 tangent_os;  // w: side of the bitangent; 0: there is none
   vec2 parametric;
   vec2 window;  // 0 ... 1 over the picture
   float ray_length;

@@ -141,7 +141,7 @@ class UvMapTest(AttributeTest):
         self.render()
         core = next(iter(session._sessions.values()))
         content = next(value for key, value in core.sent.items() if key[0] == 0)
-        self.assertEqual(len(content[2]), 1)
+        self.assertEqual(len(content[-1]), 1)
 
     def test_map_that_comes_into_use_later(self):
         """A change of the material alone brings the mesh's other map along."""

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes of Blender's Texture menu."""
 
+import bpy
+
 from ...native import capi
 from ..nodes import EXTENSIONS, Texture
 
@@ -9,8 +11,7 @@ DISPLAY_GAMMA = 2.2       # about that of sRGB
 DATA_SPACES = {"Non-Color", "Raw"}
 
 
-def dimensions(site):
-    return getattr(site.node, site.node.type.removeprefix("TEX_").lower() + "_dimensions", "3D")
+BLENDER = str(min(max(bpy.app.version[0], 3), 5))  # whose textures these are
 
 
 # ---- images ----------------------------------------------------------------------------------
@@ -81,7 +82,7 @@ def gradient(site):
 
 def magic(site):
     color = site.b.op("magic", site.vector(site.generated), site.value("Scale"),
-                      site.value("Distortion"), modes=(str(site.node.turbulence_depth),))
+                      site.value("Distortion"), modes=(str(site.node.turbulence_depth), BLENDER))
     return color if site.output.name == "Color" else site.b.average(color)
 
 
@@ -94,7 +95,7 @@ def wave(site):
                      site.value("Detail Scale", default=1.0),
                      site.value("Detail Roughness", default=0.5),
                      site.value("Phase Offset", default=0.0),
-                     modes=(node.wave_type, direction, node.wave_profile))
+                     modes=(node.wave_type, direction, node.wave_profile, BLENDER))
 
 
 def brick(site):
@@ -112,7 +113,7 @@ def brick(site):
 
 def white_noise(site):
     return site.b.op("white_noise", site.value("Vector"), site.value("W"), modes=(
-        dimensions(site), "VALUE" if site.output.name == "Value" else "COLOR"))
+        site.node.noise_dimensions, "VALUE" if site.output.name == "Value" else "COLOR"))
 
 
 # ---- noise -----------------------------------------------------------------------------------
@@ -126,7 +127,7 @@ def noise(site):
                 site.value("Lacunarity", default=2.0), site.value("Distortion"), offset_gain,
                 modes=(node.noise_dimensions, getattr(node, "noise_type", "FBM"),
                        "YES" if normalize else "NO",
-                       "COLOR" if site.output.name == "Color" else "FAC"))
+                       "COLOR" if site.output.name == "Color" else "FAC", BLENDER))
 
 
 def musgrave(site):
@@ -145,7 +146,7 @@ def voronoi(site):
         "W", "Scale", "Smoothness", "Exponent", "Randomness")), detail,
         modes=(node.voronoi_dimensions, node.distance, node.feature,
                "YES" if getattr(node, "normalize", False) else "NO",
-               "DISTANCE" if output == "RADIUS" else output))
+               "DISTANCE" if output == "RADIUS" else output, BLENDER))
 
 
 # ---- others ----------------------------------------------------------------------------------
