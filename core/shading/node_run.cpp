@@ -149,6 +149,9 @@ NodePoint node_point(Host& host, const Material& material, const BarePoint& bare
   host.beside[0] = vec2(0.0f);
   host.beside[1] = barycentric_step(host.mesh, host.hit.triangle, p.step_x_os);
   host.beside[2] = barycentric_step(host.mesh, host.hit.triangle, p.step_y_os);
+  p.mesh_normal_os = host.mesh.corner_normals.empty()
+                         ? (p.backfacing ? -p.normal_os : p.normal_os)
+                         : at_corners(host.mesh.corner_normals, host, 0);
   p.tangent_os = tangent_of(host, material);
   p.parametric = host.hit.barycentric;
   p.position_camera = from_world(host, bare.position, kPoint, kCamera);

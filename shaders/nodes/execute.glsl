@@ -117,7 +117,7 @@ NODE_FUNCTION vec3 node_normal_map(NODE_HOST_PARAMETER uint space, vec3 color, f
   float side = p.backfacing ? -1.0f : 1.0f;
   if (space == 0u) {
     if (p.tangent_os.w == 0.0f) return p.normal;
-    vec3 own = side * p.normal_os;
+    vec3 own = p.mesh_normal_os;
     vec3 tangent = node_xyz(p.tangent_os);
     vec3 bitangent = cross(own, tangent) * p.tangent_os.w;
     float height = mix(1.0f, painted.z, clamp(strength, 0.0f, 1.0f));

@@ -111,6 +111,7 @@ struct NodePoint {
   vec3 step_y;
   vec3 step_x_os;
   vec3 step_y_os;
+  vec3 mesh_normal_os;  // on the mesh's own side, as interpolated: shorter than 1 between corners
   vec4 tangent_os;  // w: side of the bitangent; 0: there is none
   vec2 parametric;
   vec2 window;  // 0 ... 1 over the picture

@@ -143,15 +143,18 @@ class Reader:
                                       "value")
         return None, socket, stack
 
-    def first_image(self, node, stack, depth=0):
+    def first_image(self, node, stack, depth=0, seen=None):
         """The first image texture upstream of a node, or None."""
-        if depth > MAX_CHAIN:
+        seen = set() if seen is None else seen
+        key = node.as_pointer(), len(stack)
+        if depth > MAX_CHAIN or key in seen:
             return None
+        seen.add(key)
         if node.type == "TEX_IMAGE" and node.image is not None:
             return self.texture(node, stack)
         for socket in node.inputs:
             above, _, above_stack = self.source(socket, stack)
-            found = above and self.first_image(above, above_stack, depth + 1)
+            found = above and self.first_image(above, above_stack, depth + 1, seen)
             if found:
                 return found
         return None
