@@ -27,13 +27,13 @@ _forget_modules()
 
 from . import (coverage, engine, export_scene, log, operators, preferences,  # noqa: E402
                properties, rivals, translations, ui)
-from .coverage import print_node_coverage  # noqa: E402, F401 (for the command line)
 from .native import loader  # noqa: E402
 
 MODULES = (log, translations, properties, operators, coverage, export_scene, preferences, engine,
            ui)
 IDLE_MODULES = (rivals,)  # of one that stands back for another Kestrel
 
+print_node_coverage = coverage.print_node_coverage  # for the command line
 _registered = []
 
 

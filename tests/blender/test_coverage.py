@@ -12,6 +12,7 @@ import numpy as np
 from kestrel import coverage
 from kestrel.sync.material import read_material
 from kestrel.sync.program import Program
+from kestrel.sync.surface import Surface
 from support import SceneTest, diffuse, image, new_material, run_blender, textured
 
 OUTPUT_TYPES = {"SHADER", "VALUE", "RGBA", "VECTOR", "INT", "BOOLEAN"}
@@ -100,6 +101,22 @@ class CoverageTest(SceneTest):
         tree.links.new(shader.outputs[0], output.inputs["Surface"])
         program = read_material(material, 1.0, self.fail)[0]
         self.assertLess(len(program.instructions), 300)
+
+    def test_long_chains_of_shaders_and_colors(self):
+        for kind, first, last in (("MixRGB", "RGB", "Color"), ("MixShader", "BsdfDiffuse", None)):
+            material, tree, output = new_material("Chain")
+            socket = tree.nodes.new(f"ShaderNode{first}").outputs[0]
+            for _ in range(100):
+                node = tree.nodes.new(f"ShaderNode{kind}")
+                tree.links.new(socket, node.inputs[1])
+                tree.links.new(socket, node.inputs[2])
+                socket = node.outputs[0]
+            if last:
+                shader = tree.nodes.new("ShaderNodeEmission")
+                tree.links.new(socket, shader.inputs[last])
+                socket = shader.outputs[0]
+            tree.links.new(socket, output.inputs["Surface"])
+            self.assertIsInstance(read_material(material, 1.0, self.fail), Surface)
 
     def test_every_node_of_this_blender(self):
         """Whatever a material is made of, there is a program or a Surface for it."""

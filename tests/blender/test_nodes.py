@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every node that is supported, beside Cycles: what it gives shines from a surface."""
 
-import math
 import unittest
 
 import bpy
 import numpy as np
-from kestrel.native import loader
 from kestrel.sync.material import read_material
 from mathutils import Matrix
-from support import SceneTest, image, look_at, new_material, turned
+from support import SceneTest, image, new_material, turned
 
 TOLERANCE = 2.0 / 255.0
 SHARE = 0.99  # of the pixels, as edges may fall on either side
@@ -89,7 +87,6 @@ class NodeTest(SceneTest):
         self.scene.view_settings.view_transform = "Standard"
         self.surface = self.plane("Surface", 2.1, matrix=turned(20, "Z") @ Matrix.Translation(
             (0.03, 0.02, 0.1)))
-        self.notes = []
 
     def rounded(self):
         """Show things on a ball in place of the plane."""
@@ -386,14 +383,12 @@ class InputTest(NodeTest):
         self.each(("Location", "Object Index", "Material Index"), build)
 
     def test_random_differs_by_object(self):
-        graph = Graph().show
-        made = Graph()
-        made.show(made.node("ObjectInfo").outputs["Random"], 1.0, 0.0)
-        first = self.pictures(made.material)[0].mean()
+        graph = Graph()
+        graph.show(graph.node("ObjectInfo").outputs["Random"], 1.0, 0.0)
+        first = self.pictures(graph.material)[0].mean()
         self.surface.name = "Another"
         second = self.render()[..., :3].mean()
         self.assertNotAlmostEqual(float(first), float(second), 3)
-        self.assertTrue(graph)
 
     def test_camera_data(self):
         self.scene.camera.data.type = "PERSP"

@@ -73,7 +73,7 @@ def read_material(material, environment_ior, report):
     is not done as Blender does it."""
     try:
         return read_surface(material, environment_ior)
-    except NotPlain:
+    except (NotPlain, RecursionError):  # or a chain of nodes so long that it is not plain
         pass
     try:
         return compile_material(material, report, environment_ior, loader.node_table())

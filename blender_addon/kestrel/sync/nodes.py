@@ -91,6 +91,11 @@ def output_node(tree, kind):
     return min(nodes, key=lambda node: rank.get(getattr(node, "target", "ALL"), 2), default=None)
 
 
+def socket_key(socket, stack):
+    """What tells a socket, or a node, within its groups from all others."""
+    return (socket.as_pointer(), *(group.as_pointer() for group in stack))
+
+
 def by_identifier(sockets, socket):
     return next((s for s in sockets if s.identifier == socket.identifier), None)
 
@@ -102,6 +107,7 @@ class Reader:
     def __init__(self, owner, report):
         self.owner = owner
         self._report = report
+        self._colors = {}  # what color() found, by socket
 
     def note(self, node, stack, instead):
         """Report a node of the groups `stack`."""
@@ -143,20 +149,20 @@ class Reader:
                                       "value")
         return None, socket, stack
 
-    def first_image(self, node, stack, depth=0, seen=None):
+    def first_image(self, node, stack):
         """The first image texture upstream of a node, or None."""
-        seen = set() if seen is None else seen
-        key = node.as_pointer(), len(stack)
-        if depth > MAX_CHAIN or key in seen:
-            return None
-        seen.add(key)
-        if node.type == "TEX_IMAGE" and node.image is not None:
-            return self.texture(node, stack)
-        for socket in node.inputs:
-            above, _, above_stack = self.source(socket, stack)
-            found = above and self.first_image(above, above_stack, depth + 1, seen)
-            if found:
-                return found
+        seen, waiting = set(), [(node, stack)]
+        while waiting:
+            node, stack = waiting.pop()
+            key = socket_key(node, stack)
+            if key in seen:
+                continue
+            seen.add(key)
+            if node.type == "TEX_IMAGE" and node.image is not None:
+                return self.texture(node, stack)
+            sources = [self.source(socket, stack) for socket in node.inputs]
+            waiting += [(above, above_stack) for above, _, above_stack in reversed(sources)
+                        if above is not None]
         return None
 
     # ---- values ----
@@ -174,6 +180,12 @@ class Reader:
 
     def color(self, socket, stack=()):
         """A Value for a colour (or grey) input."""
+        key = socket_key(socket, stack)
+        if key not in self._colors:
+            self._colors[key] = self._read_color(socket, stack)
+        return self._colors[key]
+
+    def _read_color(self, socket, stack):
         node, origin, above = self.source(socket, stack)
         if node is None:
             return Value(constant(origin.default_value))

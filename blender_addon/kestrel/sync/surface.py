@@ -186,8 +186,15 @@ class Shaders:
     def __init__(self, reader, environment_ior):
         self.reader = reader
         self.environment_ior = environment_ior
+        self._surfaces = {}  # by socket
 
     def surface(self, socket, stack=(), depth=0):
+        key = nodes.socket_key(socket, stack)
+        if key not in self._surfaces:
+            self._surfaces[key] = self._read_surface(socket, stack, depth)
+        return self._surfaces[key]
+
+    def _read_surface(self, socket, stack, depth):
         node, _, above = self.reader.source(socket, stack)
         if node is None:
             return Surface()
