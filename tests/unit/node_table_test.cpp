@@ -132,7 +132,7 @@ TEST(NodeMath, OperationsGiveWhatBlenderDefines) {
       {"COSINE", 1, 0, 0, 0.54030231f},
       {"TANGENT", 1, 0, 0, 1.55740772f},
       {"ARCSINE", 0.5f, 0, 0, 0.52359878f},
-      {"ARCSINE", 2, 0, 0, 0},
+      {"ARCSINE", 2, 0, 0, 0.5f * kPi},
       {"ARCCOSINE", 0.5f, 0, 0, 1.04719755f},
       {"ARCTANGENT", 1, 0, 0, 0.78539816f},
       {"ARCTAN2", 1, -1, 0, 2.35619449f},
