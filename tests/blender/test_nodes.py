@@ -13,8 +13,14 @@ TOLERANCE = 2.0 / 255.0
 SHARE = 0.99  # of the pixels, as edges may fall on either side
 
 
+def input_of(node, key):
+    """An input by its name or place; also one that these settings of the node do without."""
+    return node.inputs[key] if isinstance(key, int) else next(
+        socket for socket in node.inputs if socket.name == key)
+
+
 def set_input(node, key, value):
-    socket = node.inputs[key]
+    socket = input_of(node, key)
     if hasattr(socket.default_value, "__len__") and len(socket.default_value) == 4:
         value = (*value[:3], 1.0)
     socket.default_value = value
@@ -33,7 +39,7 @@ class Graph:
             setattr(node, key, value)
         for key, value in dict(inputs).items():
             if isinstance(value, bpy.types.NodeSocket):
-                self.tree.links.new(value, node.inputs[key])
+                self.tree.links.new(value, input_of(node, key))
             else:
                 set_input(node, key, value)
         return node
@@ -506,7 +512,8 @@ class PatternTest(NodeTest):
             cells = graph.vectors("FLOOR", graph.varied((5, 6, 1)))
             number = graph.math("FLOOR", graph.math("MULTIPLY", graph.numbers()[0], 3.0))
             node = graph.node("TexWhiteNoise", noise_dimensions=dimensions)
-            for socket, source in ((node.inputs["Vector"], cells), (node.inputs["W"], number)):
+            for socket, source in ((input_of(node, "Vector"), cells),
+                                   (input_of(node, "W"), number)):
                 graph.tree.links.new(source, socket)
             return node.outputs[output]
         self.each([(d, o) for d in enum("TexWhiteNoise", "noise_dimensions")
