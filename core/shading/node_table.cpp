@@ -52,7 +52,7 @@ std::vector<NodeOp> make_table() {
          "PROJECT", "REFLECT",  "REFRACT",   "FACEFORWARD", "DOT_PRODUCT",  "DISTANCE",
          "LENGTH",  "SCALE",    "NORMALIZE", "ABSOLUTE",    "MINIMUM",      "MAXIMUM",
          "FLOOR",   "CEIL",     "FRACTION",  "MODULO",      "WRAP",         "SNAP",
-         "SINE",    "COSINE",   "TANGENT",   "POWER",       "SIGN"}},
+         "SINE",    "COSINE",   "TANGENT",   "POWER",       "SIGN",         "ROUND"}},
        {"a", "b", "c", "scale"}},
       {"mix", {kNoYes /* clamp the factor */}, {"factor", "a", "b"}},
       {"mix_color",

@@ -146,6 +146,7 @@ NODE_FUNCTION vec4 node_vector_math(uint operation, vec3 a, vec3 b, vec3 c, floa
     case 26u: return node_vector(tan(a));
     case 27u: return node_vector(node_math3(5u, a, b, c));
     case 28u: return node_vector(node_math3(15u, a, b, c));
+    case 29u: return node_vector(node_math3(19u, a, b, c));
     default: return vec4(0.0f);
   }
 }

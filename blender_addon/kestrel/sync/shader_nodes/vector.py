@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes of Blender's Vector menu, and displacement."""
 
+import bpy
+
 from .curves import curves
 
 
@@ -18,12 +20,13 @@ def vector_rotate(site):
 
 
 def vector_transform(site):
-    """Normals too as vectors are, but for their length: so does Cycles."""
+    """Before Blender 4 Cycles moves normals as vectors, but for their length."""
     node, b = site.node, site.b
-    kind = "POINT" if node.vector_type == "POINT" else "VECTOR"
+    old_normal = node.vector_type == "NORMAL" and bpy.app.version < (4, 0)
     moved = b.op("vector_transform", site.value("Vector"),
-                 modes=(kind, node.convert_from, node.convert_to))
-    return b.vector_math("NORMALIZE", moved) if node.vector_type == "NORMAL" else moved
+                 modes=("VECTOR" if old_normal else node.vector_type, node.convert_from,
+                        node.convert_to))
+    return b.vector_math("NORMALIZE", moved) if old_normal else moved
 
 
 def normal(site):
