@@ -7,6 +7,7 @@ import time
 import bpy
 import numpy as np
 from kestrel import object_table, session, sync
+from kestrel.native import capi
 from kestrel.object_table import ObjectTable
 from mathutils import Matrix
 from support import SceneTest, emission
@@ -124,6 +125,23 @@ class ChangeTest(FollowTest):
         empty.location.x = -1.0
         self.update()
         self.assertIn(("set_object_transforms", 1), self.calls)
+        self.assert_fresh()
+
+    def test_moved_object_that_a_texture_follows(self):
+        empty = self.link("Guide", None)
+        tree = self.red.node_tree
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        coordinates.object = empty
+        noise = tree.nodes.new("ShaderNodeTexNoise")
+        shader = next(node for node in tree.nodes if node.type == "EMISSION")
+        tree.links.new(coordinates.outputs["Object"], noise.inputs["Vector"])
+        tree.links.new(noise.outputs[0], shader.inputs["Color"])
+        self.follow()
+        before = {key: value for key, value in self.core.sent.items() if key[0] == capi.KIND_MATERIAL}
+        empty.location.x = 1.0
+        self.update()
+        self.assertNotEqual(before, {key: value for key, value in self.core.sent.items()
+                                     if key[0] == capi.KIND_MATERIAL})
         self.assert_fresh()
 
     def test_deformed_mesh(self):

@@ -91,6 +91,17 @@ def output_node(tree, kind):
     return min(nodes, key=lambda node: rank.get(getattr(node, "target", "ALL"), 2), default=None)
 
 
+def followed_objects(tree, seen=()):
+    """The objects whose places a node tree's coordinates follow; evaluated, as the tree is."""
+    found = []
+    for node in tree.nodes:
+        if node.type == "TEX_COORD" and node.object is not None:
+            found.append(node.object)
+        elif node.type == "GROUP" and node.node_tree is not None and node.node_tree not in seen:
+            found += followed_objects(node.node_tree, (*seen, node.node_tree))
+    return found
+
+
 def socket_key(socket, stack):
     """What tells a socket, or a node, within its groups from all others."""
     return (socket.as_pointer(), *(group.as_pointer() for group in stack))

@@ -18,6 +18,7 @@ from .hair import sync_curves, sync_strands
 from .light import sync_light
 from .material import sync_material
 from .mesh import GEOMETRY, sync_mesh
+from .nodes import followed_objects
 from .settings import as_text, rows
 from .visibility import visibility
 
@@ -113,6 +114,7 @@ class Objects:
         self.visibility = {}  # (original, original owner): what visibility() says
         self.owners = {}    # unit: evaluated owner
         self.entangled = set()  # as ObjectTable has it
+        self.followed = set()   # materials whose followed_objects() are among them
 
     def key_of(self, original):
         key = self.keys.get(original)
@@ -242,6 +244,11 @@ class Objects:
         used = [self.override or slot.material for slot in obj.material_slots]
         if not used and self.override:
             used = [self.override]
+        for item in set(used).difference(self.followed, (None,)):
+            self.followed.add(item)
+            if compat.uses_nodes(item):
+                self.entangled.update(self.key_of(followed.original)
+                                      for followed in followed_objects(item.node_tree))
         sent = [sync_material(self.export, item) for item in used]
         return (tuple(ident for ident, _ in sent),
                 tuple(sorted({name for _, wanted in sent for name in wanted})))
