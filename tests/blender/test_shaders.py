@@ -4,9 +4,11 @@
 import math
 import os
 from pathlib import Path
+from unittest import mock
 
 import bpy
 import numpy as np
+from kestrel.native import capi
 from mathutils import Matrix
 from support import SceneTest, turned
 from test_nodes import Graph
@@ -59,6 +61,23 @@ class ShaderTest(SceneTest):
             pair = np.concatenate([ours, theirs, 0.5 + 4 * (ours - theirs)], axis=1)
             save(Path(PICTURES) / f"{self._testMethodName}_{found:.1f}.png", pair)
         self.assertGreater(found, least, self._testMethodName)
+
+    def test_only_changed_programs_are_sent_again(self):
+        graph = Graph()
+        mixed = graph.node("MixRGB", {0: self.noise(graph), 1: (1, 0, 0)})
+        graph.show(mixed.outputs[0])
+        self.ball.data.materials.append(graph.material)
+        sent = []
+        send = capi.Scene.set_material
+        with mock.patch.object(capi.Scene, "set_material", lambda scene, ident, item: (
+                sent.append(item.name.decode()), send(scene, ident, item))):
+            counts = []
+            for color in ((0, 0, 1, 1), (0, 0, 1, 1), (0, 1, 0, 1)):
+                mixed.inputs[2].default_value = color
+                sent.clear()
+                self.render()
+                counts.append(sorted(sent))
+        self.assertEqual(counts, [["Node", "Room"], [], ["Node"]])
 
     def noise(self, graph, scale=3.0, output="Fac"):
         return graph.node("TexNoise", {"Vector": graph.coordinates("Object"),

@@ -8,6 +8,7 @@ arithmetic of constants is done at once. Only what the outputs need becomes inst
 
 import heapq
 import math
+import struct
 from collections import Counter
 from dataclasses import dataclass
 
@@ -17,6 +18,7 @@ UNSET = -2 ** 31  # KESTREL_NODE_UNSET
 MAX_INSTRUCTIONS = 65536
 OPERANDS = 8
 MAX_COST = 2 ** 30
+FLOAT32 = struct.Struct("f")
 
 
 class TooComplex(Exception):
@@ -65,8 +67,10 @@ class Value:
 
 def _finite(value):
     """As float32 has it; 0 for what is not finite."""
-    with np.errstate(over="ignore"):
-        number = float(np.float32(value))
+    try:
+        number = FLOAT32.unpack(FLOAT32.pack(value))[0]
+    except OverflowError:
+        return 0.0
     return number if math.isfinite(number) else 0.0
 
 
@@ -92,6 +96,7 @@ class Builder:
         self.table = table
         self._ops = {op["name"]: (number, op) for number, op in enumerate(table["ops"])}
         self._values = {}
+        self._numbers = {}  # constants that are asked for often
         self._textures = {}
         self._attributes = {}
 
@@ -100,7 +105,9 @@ class Builder:
     def constant(self, x, y=None, z=None, w=1.0):
         """A number, or a vector or colour of three."""
         if y is None:
-            y = z = x
+            if x not in self._numbers:
+                self._numbers[x] = self.constant(x, x, x)
+            return self._numbers[x]
         return self._known(tuple(_finite(c) for c in (x, y, z, w)))
 
     def _known(self, four):
