@@ -137,11 +137,14 @@ class ChangeTest(FollowTest):
         tree.links.new(coordinates.outputs["Object"], noise.inputs["Vector"])
         tree.links.new(noise.outputs[0], shader.inputs["Color"])
         self.follow()
-        before = {key: value for key, value in self.core.sent.items() if key[0] == capi.KIND_MATERIAL}
+
+        def materials():
+            return {key: value for key, value in self.core.sent.items()
+                    if key[0] == capi.KIND_MATERIAL}
+        before = materials()
         empty.location.x = 1.0
         self.update()
-        self.assertNotEqual(before, {key: value for key, value in self.core.sent.items()
-                                     if key[0] == capi.KIND_MATERIAL})
+        self.assertNotEqual(materials(), before)
         self.assert_fresh()
 
     def test_deformed_mesh(self):
